@@ -74,8 +74,8 @@ impl Diagnostics {
         }
     }
 
-    /// Records what was found in scenes, of which there are `number`: plainly where every one has the fault, else with
-    /// the names of those that have it. A text without scenes is one entry without a name.
+    /// Records the faults found in scenes, of which there are `number`. A fault of every scene is recorded plainly,
+    /// else with the names of the scenes that have it. A text without scenes is one entry without a name.
     pub fn gather(&mut self, scenes: &[(Option<&str>, Diagnostics)], number: usize) {
         let mut found: BTreeMap<(usize, usize, &str), (&Diagnostic, Vec<&str>)> = BTreeMap::new();
         for (scene, diagnostics) in scenes {

@@ -208,8 +208,8 @@ pub fn warnings(source: &str) -> Result<Vec<Fault>, Vec<Fault>> {
     Ok(of(&outline::warnings::warnings(&text, &scenes, &structures)))
 }
 
-/// Parameters and inputs of a scene (without a name the whole text) of a text that is kept as a string, in the order of its
-/// formulas.
+/// Parameters and inputs of a scene, in the order of its formulas, for a text that is kept as a string. Without a name the
+/// scene is the whole text.
 ///
 /// # Errors
 /// As [`casadi_definition`].
@@ -217,8 +217,8 @@ pub fn variables(source: &str, scene: Option<&str>) -> Result<Vec<Variable>, Str
     in_scene(source, scene, |_, scene| Ok(outline::variables(&scene.model)))
 }
 
-/// Outputs of a scene (without a name the whole text) of a text that is kept as a string, those that depend on multipliers last: name,
-/// with the component's number for arrays, and unit.
+/// Outputs of a scene, those that depend on multipliers last, for a text that is kept as a string. Without a name the scene is the
+/// whole text. Each has its name, with the component's number for arrays, and its unit.
 ///
 /// # Errors
 /// As [`casadi_definition`].
@@ -321,8 +321,8 @@ pub fn structure_of(source: &str, scene: Option<&str>) -> Result<StructureReport
     })
 }
 
-/// Physically impossible lengths of links, masses, moments of inertia, stiffnesses and the like of a scene (without a name the whole
-/// text), each in a phrase. `given` has parameters and inputs by name.
+/// Physically impossible lengths of links, masses, moments of inertia, stiffnesses and the like of a scene, each in a phrase.
+/// Without a name the scene is the whole text. `given` has parameters and inputs by name.
 ///
 /// # Errors
 /// As [`casadi_definition`].

@@ -8,6 +8,7 @@ pub use mbs_codegen::picture::{Preset, Span};
 use crate::erased::erase::Erased;
 use crate::erased::facade::{AnyEquations, AnyMechanism};
 use crate::mismatch::{Mismatch, set};
+use crate::study::Study;
 
 /// Entry of a list of mechanisms, made by [`card!`](crate::card!).
 ///
@@ -26,6 +27,8 @@ pub struct Card {
     pub default_method: DefaultMethod,
     /// An instance with functions that a cross-check knows, where the text declares functions.
     pub stand_in: Option<Make>,
+    /// A chain of computations with one report, for `mbs study`.
+    pub study: Option<&'static Study>,
 }
 
 /// Makes a mechanism.
@@ -45,6 +48,7 @@ macro_rules! card {
             manifest: ::core::env!("CARGO_MANIFEST_DIR"),
             default_method: $crate::card::DefaultMethod::Projection,
             stand_in: ::core::option::Option::None,
+            study: ::core::option::Option::None,
         }
     };
 }
@@ -74,6 +78,11 @@ impl Card {
     /// The card with an instance for cross-checks, whose functions are [`StandIn`](crate::verify::StandIn)s.
     pub const fn compared_as(self, make: Make) -> Self {
         Card { stand_in: Some(make), ..self }
+    }
+
+    /// The card with a study.
+    pub const fn studied_by(self, study: &'static Study) -> Self {
+        Card { study: Some(study), ..self }
     }
 
     /// Name on the command line; that of a scene is `text:Scene`.

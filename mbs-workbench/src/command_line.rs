@@ -89,6 +89,8 @@ enum Command {
     HardCases(commands::hard_cases::Arguments),
     /// Make the profile of a cam from its lift law; say which limits it breaks, find the least cam
     Cam(Box<commands::cam::Arguments>),
+    /// Run the study that a mechanism brings: a chain of computations with one page; without a name, list the studies
+    Study(commands::study::Arguments),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
     Table(commands::table::Arguments),
 }
@@ -123,6 +125,7 @@ impl Command {
             Command::Effects(_) => "effects",
             Command::HardCases(_) => "hard-cases",
             Command::Cam(_) => "cam",
+            Command::Study(_) => "study",
             Command::Table(_) => "table",
         }
     }
@@ -157,6 +160,7 @@ impl Command {
             | Command::Effects(_)
             | Command::HardCases(_)
             | Command::Cam(_)
+            | Command::Study(_)
             | Command::Table(_) => return None,
         };
         (needs_code && is_file(name) && !is_started()).then_some(name)
@@ -295,32 +299,36 @@ fn execute(catalogue: &Catalogue, command: Option<Command>, is_document: bool) -
     let schema = command.as_ref().map_or(standard, Command::schema);
     let mut stdout = io::stdout().lock();
     let mut out = Output::new(&mut stdout, is_document.then_some(schema));
-    let done = done(catalogue, command, &mut out);
+    let done = dispatch(catalogue, command, &mut out);
     // What was built for a file has printed the document itself.
-    let ended = if let Ok(Done::Elsewhere(_)) = &done { Ok(()) } else { out.end(done.as_ref().err()) };
+    let ended = if let Ok(RunResult::Elsewhere(_)) = &done { Ok(()) } else { out.end(done.as_ref().err()) };
     let code = match done {
-        Ok(Done::Here) => ExitCode::SUCCESS,
-        Ok(Done::Elsewhere(code)) => code,
+        Ok(RunResult::Here) => ExitCode::SUCCESS,
+        Ok(RunResult::Elsewhere(code)) => code,
         Err(error) => report(&error),
     };
     ended.map_or_else(|error| report(&CommandError::Output(error)), |()| code)
 }
 
 /// Program that ran a command.
-enum Done {
+enum RunResult {
     Here,
     /// One that was built for the text of a file, with its exit code.
     Elsewhere(ExitCode),
 }
 
-fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Result<Done, CommandError> {
+fn dispatch(
+    catalogue: &Catalogue,
+    command: Option<Command>,
+    out: &mut Output,
+) -> Result<RunResult, CommandError> {
     if let Some(name) = catalogue.repeated() {
         return Err(CommandError::Usage(format!(
             "two mechanisms are called `{name}`; put each in a module of its own, or make it by a function of its own name"
         )));
     }
     if let Some(file) = command.as_ref().and_then(Command::file_to_build) {
-        return commands::of_file::run(catalogue, file, None).map(Done::Elsewhere);
+        return commands::of_file::run(catalogue, file, None).map(RunResult::Elsewhere);
     }
     let analysis = |of: Analysis, out: &mut Output| commands::run::run(catalogue, &of, out);
     match command {
@@ -354,19 +362,20 @@ fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Re
         Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, out),
         Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, out),
         Some(Command::HardCases(arguments)) => {
-            return commands::hard_cases::run(catalogue, &arguments).map(Done::Elsewhere);
+            return commands::hard_cases::run(catalogue, &arguments).map(RunResult::Elsewhere);
         }
         Some(Command::Cost(arguments)) => {
             let code = commands::cost::run(catalogue, &arguments, out)?;
             // An index is this program's own document.
-            return Ok(if arguments.is_index() { Done::Here } else { Done::Elsewhere(code) });
+            return Ok(if arguments.is_index() { RunResult::Here } else { RunResult::Elsewhere(code) });
         }
         Some(Command::Effects(arguments)) => commands::effects::run(catalogue, &arguments, out),
         Some(Command::Cam(arguments)) => commands::cam::run(&arguments, out),
+        Some(Command::Study(arguments)) => commands::study::run(catalogue, &arguments, out),
         Some(Command::Table(arguments)) => commands::table::run(&arguments, out),
     }?;
     out.flush().map_err(CommandError::Output)?;
-    Ok(Done::Here)
+    Ok(RunResult::Here)
 }
 
 fn report(error: &CommandError) -> ExitCode {

@@ -39,6 +39,8 @@ pub mod output;
 #[cfg(feature = "program")]
 pub mod setting;
 #[cfg(feature = "program")]
+pub mod study;
+#[cfg(feature = "program")]
 pub mod tables;
 pub mod target_directory;
 #[cfg(feature = "program")]

@@ -181,6 +181,7 @@ fn a_new_crate_shows_a_page_and_its_tests_pass_and_it_runs_texts_of_files() {
         manifest: Box::leak(own.join("mbs").display().to_string().into_boxed_str()),
         default_method: DefaultMethod::Projection,
         stand_in: None,
+        study: None,
     };
     let main =
         |constructor: &str| format!("fn main() {{\n    println!(\"{{}}\", {constructor}.crank);\n}}\n");

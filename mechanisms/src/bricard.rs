@@ -9,7 +9,7 @@
 //! The first and the last rod turn by an angle about their joints on the ground; those between are bodies in space by position and
 //! Euler parameters. Of the 20 rows of the joints between the rods 19 are independent in every position.
 //!
-//! Source: IFToMM benchmark A04, Bricard's mechanism: rods of 1 m and 1 kg with a square section of 0.1 m, P1 and P6 on the ground,
+//! Source: IFToMM benchmark A04, Bricard's mechanism. Rods of 1 m and 1 kg with a square section of 0.1 m, P1 and P6 on the ground,
 //! free fall along −y, from rest.
 
 use mbs_runtime::mechanism;

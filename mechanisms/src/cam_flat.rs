@@ -13,9 +13,9 @@
 //!
 //! The motion law is `lift(c) = h ((1 − cos c)/2)²`: periodic, smooth, with a slow start at the bottom. For a flat face
 //! the point of the profile that touches at the cam angle `c` has the coordinates `[lift′(c), rb + lift(c)]` in the
-//! ground; turned back by `c` it is the profile in the cam's own frame. The mechanism knows only this profile:
-//! its rows say that a point of the profile with the parameter `c` is at `(x, y)` and that its tangent lies in the
-//! face. That `c` follows `θ` and `y` the motion law is the outcome.
+//! ground; turned back by `c` it is the profile in the cam's own frame. The mechanism knows only this profile. Its rows
+//! say that a point of the profile with the parameter `c` is at `(x, y)` and that its tangent lies in the face. That
+//! `c` follows `θ` and `y` the motion law is the outcome.
 //!
 //! Angles in rad, lengths in metres, `q = [θ c x y]`. The radius of curvature `rb + lift + lift″ ≥ 30 mm` is positive:
 //! the profile is convex and touches a line on either side; `upper` picks the follower's.

@@ -1,5 +1,5 @@
-//! The axle of a car on a bumpy road: two wheels on springs, the left one on flat ground, the right one on a road that
-//! rises and falls.
+//! The axle of a car on a bumpy road. Two wheels are on springs: the left one on flat ground, the right one on a road
+//! that rises and falls.
 //!
 //! ```text
 //!     L ●━━━━━━━━━━━━━━━━● R        rod of length `L` between the points L and R

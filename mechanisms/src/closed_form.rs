@@ -1,6 +1,6 @@
 //! Closed forms that the tests compare with: geometry on numbers that carry two time derivatives.
 //!
-//! Nothing here is shared with the symbolic core or the solvers: a position is written as a formula of the time,
+//! Nothing here is shared with the symbolic core or the solvers. A position is written as a formula of the time;
 //! its derivatives follow by the product and chain rules in [`Jet`]'s operators.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -81,8 +81,8 @@ impl Vector {
         Jet([y.atan2(x), rate, (x * b - y * a) / square - 2.0 * rate * (x * u + y * v) / square])
     }
 
-    /// The point at distance `r` from here and `s` from `other`, on the left (`side = 1`) or right (`-1`) of the
-    /// way from here to `other`: intersection of two circles.
+    /// Intersection of two circles: the point at distance `r` from here and `s` from `other`. It lies on the
+    /// left (`side = 1`) or right (`-1`) of the way from here to `other`.
     pub fn meet(self, r: f64, other: Self, s: f64, side: f64) -> Self {
         let way = other - self;
         let square = way.dot(way);
@@ -119,9 +119,9 @@ pub fn lecture_four_bar(t: Jet, side: f64) -> [Vector; 4] {
 
 /// The motion equals `form` at every instant, for the coordinates or outputs `names` (components `P.0` apart).
 ///
-/// Errors of positions, rates and accelerations are parts of the largest magnitude over all `names` of that unit
-/// and the whole motion; an angle counts on the circle, as a part of 1 rad at least. The scale of a derivative is at
-/// least that of the position times the angular frequency of the motion, to its order: what ought to stand still
+/// Errors of positions, rates and accelerations are parts of the largest magnitude over all `names` of that unit and
+/// the whole motion; an angle counts on the circle, as a part of 1 rad at least. The scale of a derivative is at
+/// least that of the position times the angular frequency of the motion, to its order. So what ought to stand still
 /// is judged by what moves.
 #[track_caller]
 pub fn assert_moves_as(motion: &Motion, names: &[&str], bound: f64, mut form: impl FnMut(Jet) -> Vec<Jet>) {

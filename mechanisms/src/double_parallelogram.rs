@@ -15,8 +15,8 @@
 //! Cranks `D A`, `E B`, `F C` of one length `L`, a plate and a ground of one triangle: `B` and `E` at `d` along x, `C` and
 //! `F` at `[e, h]`. Two loops, `D A B E` and `D A C F`, give four rows for the three angles that the drive leaves; they
 //! agree because the triangles are equal. The plate does not turn, and every point of it moves on a circle. Since the
-//! joints are not in line, one loop carries the other over its change point: a plate on two cranks would be free to
-//! turn where they are in line with it.
+//! joints are not in line, one loop carries the other over its change point. A plate on two cranks would be free to turn
+//! where they are in line with it.
 //!
 //! Lengths in metres, angles in rad, counter-clockwise: `α`, `β`, `γ` of the cranks and `ψ` of the plate, all but the
 //! driven `α` dependent. `error` is what crank `E B` is longer than the others; the loops then contradict each other.

@@ -17,8 +17,8 @@
 //! point stands at `L5` from `A`, turned by `α` against `A B`. The crank turns at constant `ω`.
 //!
 //! Rows stand in the order of the lecture's slides and have their signs. The crank is the shortest link and
-//! `L1 + L2 = 0.80 m < L3 + L4 = 1.05 m`, so that it turns fully (Grashof) in either assembly:
-//! `sin(φ3 − φ2)` keeps its sign, positive in the open one (`side = 1`), negative in the crossed one (`side = -1`).
+//! `L1 + L2 = 0.80 m < L3 + L4 = 1.05 m`, so it turns fully (Grashof) in either assembly. `sin(φ3 − φ2)` keeps its
+//! sign, positive in the open one (`side = 1`), negative in the crossed one (`side = -1`).
 //!
 //! Numbers: the reference problem in `tests/data/four_bar.csv`.
 

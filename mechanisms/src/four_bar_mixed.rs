@@ -12,8 +12,8 @@
 //!           O       L4        D
 //! ```
 //!
-//! Links, units, branches and motion are those of `four_bar.rs` and `four_bar_natural.rs`. A motor gives an angle:
-//! the angle becomes a coordinate with a row that ties it to the crank's point, so that the drive is the lecture's
+//! Links, units, branches and motion are those of `four_bar.rs` and `four_bar_natural.rs`. A motor gives an angle.
+//! The angle becomes a coordinate with a row that ties it to the crank's point, so that the drive is the lecture's
 //! `φ1 = ωt`. The row is the cross product, which never degenerates, where `x = L1 cos φ1` would at `φ1 = 0` and `π`.
 //!
 //! Numbers: those of `four_bar.rs`.

@@ -10,9 +10,9 @@
 //! ```
 //!
 //! Lengths in metres, `q = [θ φ s]`. The pin enters and leaves the slot along its direction, without a jump of the
-//! velocity, where the lines `O A` and `D A` are at right angles: at `θ = ∓45°` with `r1 = d sin 45°`. In between the
-//! closure `r1 unit(θ) = [d, 0] − s unit(φ)` holds. Outside, the driver's disc locks the wheel, which dwells at
-//! `φ = ±45°`: the rows hold with `θ` held at that end. One text has both: the closure is written with
+//! velocity, where `O A` is at right angles to `D A`: at `θ = ∓45°` with `r1 = d sin 45°`. In between the closure
+//! `r1 unit(θ) = [d, 0] − s unit(φ)` holds. Outside, the driver's disc locks the wheel, which dwells at `φ = ±45°`:
+//! the rows hold with `θ` held at that end. One text has both: the closure is written with
 //! `engaged = max(−45°, min(45°, θ))`.
 //!
 //! The motion is one turn of the driver, from `θ = −180°`: dwell, engagement, dwell. At the two ends of the

@@ -13,8 +13,8 @@
 //! The shaft turns by φ, the slider turns with it at height s; the rods are bodies in space by position and Euler parameters, each
 //! with the five rows of a revolute joint on the shaft.
 //!
-//! Source: IFToMM benchmark A05, stiff flyball governor: shaft and rods 1 m with a square section of 0.01 m, slider a cube of 0.1 m,
-//! 3000 kg/m³, balls of 5 kg, springs of 8e5 N/m and 4e4 N s/m, free fall along −z, 2π rad/s about the shaft at the start.
+//! Source: IFToMM benchmark A05, stiff flyball governor. Shaft and rods 1 m with a square section of 0.01 m, slider a cube of 0.1 m,
+//! 3000 kg/m³; balls of 5 kg, springs of 8e5 N/m and 4e4 N s/m, free fall along −z, 2π rad/s about the shaft at the start.
 
 use mbs_runtime::mechanism;
 use mbs_workbench::card;

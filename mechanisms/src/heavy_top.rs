@@ -8,8 +8,8 @@
 //!         pivot
 //! ```
 //!
-//! Numbers of a benchmark of integrators on Lie groups (Brüls & Cardona 2010, "On the use of Lie group time integrators in
-//! multibody dynamics"): 15 kg at 1 m, 150 rad/s about its axis.
+//! Numbers of a benchmark of integrators on Lie groups: 15 kg at 1 m, 150 rad/s about its axis. Source: Brüls & Cardona
+//! 2010, "On the use of Lie group time integrators in multibody dynamics".
 
 use mbs_runtime::mechanism;
 use mbs_workbench::card;

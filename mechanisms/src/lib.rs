@@ -19,6 +19,7 @@ pub mod cam_oscillating;
 pub mod cam_roller;
 pub mod car_axis;
 pub mod cart_pole;
+pub mod desmo;
 pub mod determinant_guide;
 pub mod double_parallelogram;
 pub mod double_pendulum;
@@ -89,6 +90,7 @@ pub static CATALOGUE: Catalogue = Catalogue {
         cam_roller::CARD,
         cam_oscillating::CARD,
         cam_law::CARD,
+        desmo::CARD,
         planetary_gear::CARD,
         double_parallelogram::CARD,
         slider_crank_scenes::DRIVEN_CRANK,

@@ -14,7 +14,7 @@
 //!
 //! Each angle (rad) is that of a link against the one before, positive counter-clockwise; lengths in metres.
 //! The loop closes at `D`. Rows stand in the lecture's order: the time constraint first, then the closure.
-//! `sin ψ3` is zero where links 2 and 3 are in line and keeps its sign otherwise: negative in the drawn
+//! `sin ψ3` is zero where links 2 and 3 are in line, and keeps its sign otherwise. It is negative in the drawn
 //! assembly (`side = 1`), positive in its mirror image (`side = -1`).
 //!
 //! Numbers: chosen here, a crank-rocker by Grashof's rule, `L1 + OD = 0.40 m < L2 + L3 = 0.45 m`.

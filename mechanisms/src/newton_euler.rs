@@ -1,4 +1,4 @@
-//! Newton's and Euler's sums of plane bodies as one linear system, for tests: it knows masses, places and accelerations,
+//! Newton's and Euler's sums of plane bodies as one linear system, for tests. It knows masses, places and accelerations,
 //! and nothing of constraints, multipliers or virtual work.
 
 use crate::reference::load;
@@ -102,8 +102,8 @@ fn eliminated(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     (0..size).map(|k| rows[k][size] / rows[k][k]).collect()
 }
 
-/// Forces in pins and a torque at every instant of a motion are `expected`: two components a pin in the order of `pins`, then
-/// the torque; relative to the largest. Prints the largest difference behind `name`.
+/// Forces in pins and a torque at every instant of a motion are `expected`, relative to the largest. Their order is two
+/// components for each of `pins`, then the torque. Prints the largest difference behind `name`.
 #[track_caller]
 pub fn assert_agree(
     name: &str,

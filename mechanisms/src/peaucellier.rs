@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn the_line_is_straight() {
+    fn peaucellier_output_is_straight() {
         let motion = one_turn(&CARD, 0, 720);
         let s = &motion.coordinates[5..7];
         assert!(s[0].q.iter().all(|x| (x - LINE).abs() < 1e-12));

@@ -14,7 +14,7 @@
 //! Rolling without slip, seen from the carrier: equal arcs on both pitch circles, opposite between sun and planet,
 //! equal between planet and ring. `q = [θs θp θc θr]`. Willis: `(θs − θc)/(θr − θc) = −(rs + 2 rp)/rs`. The rows are
 //! linear: one assembly, no singular position. Three planets at 120° move alike; they are drawn with 30, 15 and 60
-//! teeth: the radii are as the teeth, `(30 + 60)/3` is whole, and with the planet's odd number tooth meets gap at
+//! teeth. The radii are as the teeth, and `(30 + 60)/3` is whole. The planet's number is odd, so tooth meets gap at
 //! either end of the line `S P` where all angles are 0. One turn of the sun turns the carrier by 120°.
 //!
 //! Numbers: chosen here, module 4 mm.

@@ -12,12 +12,12 @@
 //! ```
 //!
 //! All angles absolute (rad), lengths in metres, `q = [θ α β γ δ]`. The point `P` stands on the coupler `A B`, `m` along
-//! and `n` across to the right. The crank `F E` is none of the four bars of the loop `O A B D`: neither the loop nor
-//! the chain `F E P` can be closed alone, and the four angles `α β γ δ` make one block. (Driven at `O A` the same
-//! linkage is two triangles, one after the other.)
+//! and `n` across to the right. The crank `F E` is none of the four bars of the loop `O A B D`. Neither the loop nor the
+//! chain `F E P` can be closed alone, so the four angles `α β γ δ` make one block. (Driven at `O A` the same linkage is
+//! two triangles, one after the other.)
 //!
 //! For every `θ` there is one assembly with `sin(γ − β) > 0` (drawn) and one with `< 0`, as a scan of `α` over the
-//! circle shows. During a turn `sin(γ − β)` stays above 0.80, and the distance `E P`, as a function of `α` in the
+//! circle shows. During a turn `sin(γ − β)` stays above 0.80. The distance `E P`, as a function of `α` in the
 //! four-bar, keeps a slope between −0.36 m and −0.29 m: no singular position.
 //!
 //! Numbers: chosen here.
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn it_returns_to_where_it_began() {
+    fn coordinates_return_after_one_turn() {
         let motion = one_turn(&CARD, 0, 180);
         for coordinate in &motion.coordinates[1..] {
             let (first, last) = (coordinate.q[0], coordinate.q[180]);

@@ -15,7 +15,7 @@
 //! Absolute angles, `q = [x y φ θ0 θ1 θ2 ψ0 ψ1 ψ2]`. Each leg closes with two rows; the drives swing by `swing` about
 //! their middle positions, a third of a period apart. The six unknowns other than the driven angles make one block; up
 //! to six assemblies belong to given drives. The branches pick one: the three elbows bent the same way, and the sign of
-//! the determinant of the platform's equations of velocity, whose zero is the singular position of the parallel
+//! a determinant. It is that of the platform's equations of velocity; its zero is the singular position of the parallel
 //! kind. During the motion the sines of the elbows stay below −0.8, the determinant between 1.3 and 1.6.
 //!
 //! Numbers: chosen here.

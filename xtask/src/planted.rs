@@ -8,6 +8,9 @@ use crate::shell::{command, need, output, root, run, target};
 /// Folder of the patches.
 const FOLDER: &str = "xtask/planted";
 
+/// Folder of the cases: a text and a description each.
+const LIST: &str = "mbs-workbench/hard_cases";
+
 /// Head of the line of a patch that names its cases.
 const CASES: &str = "Cases: ";
 
@@ -112,8 +115,28 @@ fn applied(copy: &Path, fault: &Fault, options: &[&str]) -> Result<(), String> {
     })
 }
 
+/// Leaves in the copy the files of some cases alone: the program of a study has all texts of the folder, and each takes the compiler
+/// seconds.
+fn chosen(copy: &Path, cases: &str) -> Result<(), String> {
+    let folder = root().join(LIST);
+    let unreadable = |error: std::io::Error| format!("{}: {error}", folder.display());
+    for entry in fs::read_dir(&folder).map_err(unreadable)? {
+        let from = entry.map_err(unreadable)?.path();
+        let stem = from.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let Some(name) = from.file_name() else { continue };
+        let to = copy.join(LIST).join(name);
+        if cases.split(',').any(|case| case == stem) {
+            fs::copy(&from, &to).map_err(|error| format!("{}: {error}", to.display()))?;
+        } else if from.extension().is_some_and(|suffix| suffix == "mbs" || suffix == "toml") {
+            drop(fs::remove_file(&to));
+        }
+    }
+    Ok(())
+}
+
 /// Number of wrong runs of some cases.
 fn wrong(copy: &Path, cases: &str, out: &Path) -> Result<usize, String> {
+    chosen(copy, cases)?;
     let table = out.join("hard-cases.csv");
     // A table of an earlier run tells nothing.
     drop(fs::remove_file(&table));

@@ -39,13 +39,15 @@ pub fn run(count: bool) -> Result<(), String> {
         }
     }
     let mut documents = files(&root().join("book/src"), "md")?;
-    documents.push(root().join("README.md"));
+    documents.extend(["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|name| root().join(name)));
     for path in documents {
         long.extend(findings(&path, 1, &read(&path)?));
     }
     print("doc comments that begin with What, Whether, How or Where", &questions, count);
     print(
-        &format!("sentences of more than {MOST} words in README, book and public documentation"),
+        &format!(
+            "sentences of more than {MOST} words in README, ARCHITECTURE, CONTRIBUTING, book and public docs"
+        ),
         &long,
         count,
     );
@@ -124,9 +126,38 @@ fn findings(path: &Path, line: usize, text: &str) -> Vec<Finding> {
     long.map(|(offset, text)| Finding { path: path.to_path_buf(), line: line + offset, text }).collect()
 }
 
-/// Words; operators and marks are none.
+/// Words of a sentence. Symbols of formulas are none, and neither are numbers and letters that an operator joins, as in `a = 38`.
 fn words(sentence: &str) -> usize {
-    sentence.split_whitespace().filter(|word| word.chars().any(char::is_alphanumeric)).count()
+    let tokens: Vec<&str> = sentence.split_whitespace().collect();
+    let is_operand = |index: usize| {
+        let before = index.checked_sub(1).and_then(|index| tokens.get(index));
+        [before, tokens.get(index + 1)].into_iter().flatten().any(|token| is_operator(token))
+    };
+    let is_word = |(index, token): (usize, &&str)| {
+        has_two_letters(token) || (is_article_or_number(token) && !is_operand(index))
+    };
+    tokens.iter().enumerate().filter(|&pair| is_word(pair)).count()
+}
+
+fn is_operator(token: &str) -> bool {
+    !token.is_empty() && token.chars().all(|letter| "=+−-·×/<>≤≥≈←".contains(letter))
+}
+
+/// True for words and their abbreviations, not for symbols such as `Φ_q`, `q̈`, `λᵀγ̇` and `N`.
+fn has_two_letters(token: &str) -> bool {
+    let is_letter = |letter: &char| letter.is_ascii_alphabetic() || ('\u{c0}'..='\u{24f}').contains(letter);
+    let letters: Vec<char> = token.chars().collect();
+    let is_pair = |index: usize| {
+        let combining = letters.get(index + 2).is_some_and(|letter| ('\u{300}'..='\u{36f}').contains(letter));
+        letters[index..].iter().take(2).filter(|letter| is_letter(letter)).count() == 2 && !combining
+    };
+    (0..letters.len()).any(is_pair)
+}
+
+/// True for an article of one letter, the pronoun and plain numbers.
+fn is_article_or_number(token: &str) -> bool {
+    let bare = token.trim_matches(|letter: char| !letter.is_alphanumeric());
+    ["a", "A", "I"].contains(&bare) || bare.starts_with(|letter: char| letter.is_ascii_digit())
 }
 
 /// Sentences with the lines of their beginning, counted from 0. Blocks of code have none, cells of tables and items of lists are
@@ -167,7 +198,7 @@ fn sentences(text: &str) -> Vec<(usize, String)> {
                     close(&mut sentence, begin);
                 }
             }
-            if line.starts_with('|') {
+            if line.starts_with(['|', '#']) {
                 close(&mut sentence, begin);
             }
         }
@@ -205,10 +236,21 @@ mod tests {
 
     #[test]
     fn sentences_end_at_marks_items_and_cells() {
-        let text = "One, e.g. this one.\nTwo goes\non (`a. b c`). Three\n\n- four\n- five\n\n| six | seven |\n|---|---|\n```text\nnone. here.\n```\nEight";
+        let text = "# Title\nOne, e.g. this one.\nTwo goes\non (`a. bc d`). Three\n\n- four\n- five\n\n| six | seven |\n|---|---|\n```text\nnone. here.\n```\nEight";
         let found = sentences(text);
         let begins: Vec<usize> = found.iter().map(|(line, _)| *line).collect();
-        assert_eq!(begins, [0, 1, 2, 4, 5, 7, 7, 8, 12], "{found:?}");
-        assert_eq!(words(&found[1].1), 4, "code is one word: {found:?}");
+        assert_eq!(begins, [0, 1, 2, 3, 5, 6, 8, 8, 9, 13], "{found:?}");
+        assert_eq!(words(&found[2].1), 4, "code is one word: {found:?}");
+    }
+
+    #[test]
+    fn symbols_and_operands_are_no_words() {
+        for (sentence, count) in [
+            ("M q̈ + Φ_qᵀ λ = Q, with λᵀγ̇ at q", 2),
+            ("lengths a = 38, b = 41.5 and a length of 3 m", 6),
+            ("Brüls took 1.5 ≤ x, the sum_of_all", 4),
+        ] {
+            assert_eq!(words(sentence), count, "{sentence}");
+        }
     }
 }

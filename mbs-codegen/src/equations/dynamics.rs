@@ -3,7 +3,7 @@
 use super::acting_bodies::{Attribution, Undetermined};
 use super::contacts::{ByContact, Push, by_contact};
 use super::deferred::Missing;
-use super::forces::{self, Acting};
+use super::generalized_forces::{self, Acting};
 use super::inertia::Inertia;
 use super::lower::Clock;
 use super::non_negative::{NonNegative, Of, signed};
@@ -120,8 +120,8 @@ pub struct Dynamics {
     pub gaps: Vec<Gap>,
     /// Q contact by contact, where there are contacts.
     pub by_contact: Option<ByContact>,
-    /// Time derivatives of the working ranges, where the text calls no function and no drive prescribes a rate: then parts of a motion
-    /// can be enclosed.
+    /// Time derivatives of the working ranges, by which parts of a motion can be enclosed. Given where the text calls no function and
+    /// no drive prescribes a rate.
     pub limit_rates: Vec<[Option<NodeId>; 3]>,
     /// Derivatives that are left out of ∂Q/∂q, ∂Q/∂q̇, (M x)_q, (Φ_qᵀ λ)_q and the slopes, for declared functions are not
     /// smooth enough.
@@ -205,14 +205,14 @@ pub fn derive(
         }
     }
     let Inertia { mass, bias, kinetic, carried } = inertia;
-    let forces::Forces { force, potential, powers, acting, carried } =
-        forces::derive(g, declared, &of, clock, (count, carried, &[]));
+    let generalized_forces::Forces { force, potential, powers, acting, carried } =
+        generalized_forces::derive(g, declared, &of, clock, (count, carried, &[]));
     let less_bias = |g: &mut Graph, force: Vec<Sum>| -> Vec<Option<NodeId>> {
         force.into_iter().zip(&bias).map(|(force, bias)| force.minus(g, bias.0).0).collect()
     };
     let force = less_bias(g, force);
     let by_contact = by_contact(g, declared, &of, &powers, |g, contacts| {
-        let others = forces::derive(g, declared, &of, clock, (count, carried, contacts));
+        let others = generalized_forces::derive(g, declared, &of, clock, (count, carried, contacts));
         less_bias(g, others.force)
     });
 

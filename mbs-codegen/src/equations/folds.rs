@@ -86,8 +86,8 @@ fn opposite(products: &[Product]) -> Vec<Product> {
 /// ascending. All others lead every row straight on at any position, alone or together:
 ///
 /// - linearly, times values of the position;
-/// - as a direction, by sine and cosine of one angle with the same coefficients in two rows: another one after any change by less
-///   than half a turn;
+/// - as a direction, by sine and cosine of one angle with the same coefficients in two rows; a change of that angle by less than half a
+///   turn always gives another direction;
 /// - in a row of sine and cosine of one angle alone, which vanishes once in half a turn.
 pub fn folding(model: &Model, equations: &Equations) -> Vec<usize> {
     let graph = &equations.graph;

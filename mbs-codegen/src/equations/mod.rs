@@ -10,7 +10,7 @@ pub mod deferred;
 mod degree;
 mod dynamics;
 pub mod folds;
-mod forces;
+mod generalized_forces;
 mod gradients;
 mod inertia;
 mod lower;

@@ -1,8 +1,8 @@
 //! Curves, points on them, distances to them and their normals, as rows and functions of the text.
 //!
 //! A polar curve is star-shaped: r = R(w − θ) about its centre C, w the angle of a point A seen from C. It has one row, r − R, and no
-//! coordinate of its own. A circle that rolls on a contour is a point, its centre, on the pitch curve, which lies the circle's
-//! radius outside: so every curve here is one of points.
+//! coordinate of its own. A circle that rolls on a contour is a point, its centre, on the pitch curve, which lies the circle's radius
+//! outside. So every curve here is one of points.
 
 use std::f64::consts::TAU;
 

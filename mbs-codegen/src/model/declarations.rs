@@ -4,26 +4,18 @@ use std::borrow::Cow;
 
 use proc_macro2::Span;
 
+use super::Model;
 use super::bare_angles::is_of_angles;
-use super::counts::LONGEST;
-use super::dynamics::FirstOrderState;
 use super::elaborator::Elaborator;
-use super::expression::{Id, Node};
-use super::initialiser::{definition, filling, in_unit, initialiser, numbers};
+use super::initialiser::{definition, in_unit, initialiser, numbers};
 use super::late_lets::late_lets;
 use super::names::Names;
 use super::order::order;
-use super::turns::turning;
 use super::unit_faults::Place;
-use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
-use super::{Coordinate, CoordinateField, Field, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::{Bounds, Declares, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
-
-/// Range of a parameter about which the text says nothing.
-pub(super) const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+use crate::syntax::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
 /// Most coordinates. A step is linear in them and has arrays of as many on its stack; Φ_q as a whole, which no step asks
 /// for, is a dense array of 288 MB then.
@@ -117,17 +109,7 @@ fn split_at_loops(statements: &[Statement]) -> (Vec<&Statement>, Vec<&Statement>
 }
 
 fn declared_name(statement: &Statement) -> Option<&Name> {
-    match &statement.kind {
-        StatementKind::Const { name, .. }
-        | StatementKind::Param { name, .. }
-        | StatementKind::Input { name, .. }
-        | StatementKind::Coord { name, .. }
-        | StatementKind::State { name, .. }
-        | StatementKind::Function { name, .. }
-        | StatementKind::Let { name, .. }
-        | StatementKind::Curve { name, .. } => Some(name),
-        _ => None,
-    }
+    statement.kind.declared().filter(|(kind, _)| *kind == "value").map(|(_, name)| name)
 }
 
 pub(super) struct Declarations<'a> {
@@ -213,281 +195,12 @@ impl Declarations<'_> {
     }
 
     /// Names the lengths of a value; those of the first `known` expressions keep their name.
-    fn name_lengths(&mut self, value: &Value, known: usize, name: &str, span: Span) {
+    pub(super) fn name_lengths(&mut self, value: &Value, known: usize, name: &str, span: Span) {
         let is_length =
             |item: &&Scalar| item.quantity == Quantity::Known(Dimension::METRE) && item.id.index() >= known;
         for item in value.items.iter().filter(is_length) {
             self.model.expressions.name_length(item.id, Dimension::METRE, |_| name.to_owned(), span);
         }
-    }
-
-    /// Before: a type as written. After: its dimension and lengths; a faulty part is reported and replaced by an
-    /// array of one component, a number.
-    fn declared(&mut self, kind: &Type) -> Declared {
-        let dimension = Dimension::of(&kind.unit, self.diagnostics);
-        let shape = self.elaborate(|work| {
-            kind.shape
-                .iter()
-                .map(|length| {
-                    let value = work.value(length)?;
-                    match work.count(&value)? {
-                        0 => Err(work.fault(
-                            value.span,
-                            "an array needs at least one component",
-                            "write a positive length",
-                        )),
-                        length => Ok(length),
-                    }
-                })
-                .collect::<Result<Vec<_>, Fault>>()
-        });
-        let sized = shape.ok().and_then(|shape| {
-            let size = shape.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
-            let size = size.filter(|size| *size <= LONGEST);
-            if size.is_none() {
-                let message = format!("the array has more than {LONGEST} components");
-                self.diagnostics.report(kind.unit.span, message, "split it");
-            }
-            Some((shape, size?))
-        });
-        let faulty = dimension.is_none() || sized.is_none();
-        let (shape, size) = sized.unwrap_or_else(|| (vec![1; kind.shape.len()], 1));
-        Declared { dimension: dimension.unwrap_or_default(), bare: Bare::of(&kind.unit), shape, size, faulty }
-    }
-
-    fn parameter(
-        &mut self,
-        name: &Name,
-        docs: Vec<String>,
-        kind: &Type,
-        (value, bounds): (Option<&Expression>, &Bounds),
-    ) {
-        let declared = self.declared(kind);
-        if !self.owns(name) {
-            return;
-        }
-        let defaults = match value {
-            None => {
-                self.diagnostics.report(
-                    name.span,
-                    format!("parameter `{}` has no default", name.text),
-                    format!(
-                        "write `param {}: {} = …;`, or `input` for what is set before each step",
-                        name.text, kind.unit.text
-                    ),
-                );
-                None
-            }
-            Some(_) if declared.faulty => None,
-            Some(expression) => self
-                .elaborate(|work| {
-                    if is_of_angles(&kind.unit) {
-                        work.bare_angles(&expression.code)?;
-                    }
-                    let value = work.value(expression)?;
-                    let place = Place::Value(name.text.clone());
-                    let value = work.concerning(place, (expression, None), |work| {
-                        initialiser(work, value, declared.dimension)
-                    })?;
-                    let value = filling(work, value, &declared.shape)?;
-                    numbers(work, expression, &value, "a default")
-                })
-                .ok(),
-        };
-        let dimension = (!declared.faulty).then_some(declared.dimension);
-        let known = defaults.clone();
-        let defaults = defaults.unwrap_or_else(|| vec![0.0; declared.size]);
-        let first = self.model.variables.len();
-        self.parameter_field(name, docs, kind, declared, defaults);
-        if let Some(dimension) = dimension {
-            self.bound(name, first, (dimension, bounds), known.as_deref());
-        }
-    }
-
-    fn parameter_field(
-        &mut self,
-        name: &Name,
-        docs: Vec<String>,
-        kind: &Type,
-        declared: Declared,
-        defaults: Vec<f64>,
-    ) {
-        let first = self.model.variables.len();
-        let items = first..first + declared.size;
-        for (component, default) in component_names(&name.text, &declared.shape).zip(defaults) {
-            self.variable(component, kind, declared.dimension, default, VariableKind::Parameter, name);
-        }
-        self.field(name, docs, kind, declared, items.collect(), Role::Parameter);
-    }
-
-    fn input(&mut self, name: &Name, docs: Vec<String>, kind: &Type, rates: bool) {
-        let (kind, turns) = turning(kind);
-        let kind = kind.as_ref();
-        let declared = self.declared(kind);
-        if !self.owns(name) {
-            return;
-        }
-        let dimension = declared.dimension;
-        let mut items = Vec::new();
-        for component in component_names(&name.text, &declared.shape) {
-            items.push(self.model.variables.len());
-            if !rates {
-                self.variable(component, kind, dimension, 0.0, VariableKind::Input, name);
-                continue;
-            }
-            self.variable(component.clone(), kind, dimension, 0.0, VariableKind::InputWithRates, name);
-            for (suffix, order) in [("rate", 1), ("acceleration", 2)] {
-                let seconds = Dimension::SECOND.power(f64::from(order)).unwrap_or_default();
-                self.model.variables.push(Variable {
-                    name: format!("{component}.{suffix}"),
-                    unit: format!("{}/s{}", kind.unit.text, if order == 1 { "" } else { "^2" }),
-                    dimension: dimension.over(seconds),
-                    default: 0.0,
-                    range: ANY,
-                    tolerance: None,
-                    turns: false,
-                    kind: VariableKind::InputRate,
-                    span: name.span,
-                });
-            }
-        }
-        for item in &items {
-            if let Some(variable) = self.model.variables.get_mut(*item) {
-                variable.turns = turns;
-            }
-        }
-        let role = if rates { Role::InputWithRates } else { Role::Input };
-        self.field(name, docs, kind, declared, items, role);
-    }
-
-    fn variable(
-        &mut self,
-        component: String,
-        kind: &Type,
-        dimension: Dimension,
-        default: f64,
-        what: VariableKind,
-        name: &Name,
-    ) {
-        self.model.variables.push(Variable {
-            name: component,
-            unit: kind.unit.text.clone(),
-            dimension,
-            default,
-            range: ANY,
-            tolerance: None,
-            turns: false,
-            kind: what,
-            span: name.span,
-        });
-    }
-
-    /// Declares the field and defines its name as the variables `items`.
-    fn field(
-        &mut self,
-        name: &Name,
-        docs: Vec<String>,
-        kind: &Type,
-        declared: Declared,
-        items: Vec<usize>,
-        role: Role,
-    ) {
-        let unit = kind.unit.text.clone();
-        let first = items.first().copied().unwrap_or(0);
-        let ids = items.into_iter().map(|index| self.model.expressions.push(Node::Variable(index))).collect();
-        self.define(name, &declared, ids);
-        self.model.fields.push(Field { name: name.clone(), docs, unit, shape: declared.shape, first, role });
-    }
-
-    /// Gives the name its value; a faulty declaration's uses are not reported.
-    fn define(&mut self, name: &Name, declared: &Declared, ids: Vec<Id>) {
-        let bare = declared.bare;
-        if declared.faulty {
-            return self.names.give_up(&name.text);
-        }
-        let quantity = Quantity::Known(declared.dimension);
-        let items = ids.into_iter().map(|id| Scalar { id, quantity, bare, span: name.span }).collect();
-        self.names.define(&name.text, Value { shape: declared.shape.clone(), items, span: name.span });
-    }
-
-    fn coordinate(&mut self, name: &Name, docs: Vec<String>, kind: &Type, guess: Option<&Expression>) {
-        let (kind, turns) = turning(kind);
-        let kind = kind.as_ref();
-        let declared = self.declared(kind);
-        if !self.owns(name) {
-            return;
-        }
-        let (dimension, size) = (declared.dimension, declared.size);
-        let known = self.model.expressions.len();
-        let guesses = guess.filter(|_| !declared.faulty).map(|expression| {
-            self.elaborate(|work| {
-                if is_of_angles(&kind.unit) {
-                    work.bare_angles(&expression.code)?;
-                }
-                let value = work.value(expression)?;
-                let place = Place::Value(name.text.clone());
-                let value =
-                    work.concerning(place, (expression, None), |work| initialiser(work, value, dimension))?;
-                filling(work, value, &declared.shape)
-            })
-        });
-        let guesses: Vec<Option<Id>> = match guesses {
-            Some(Ok(value)) => {
-                self.name_lengths(&value, known, &format!("guess of {}", name.text), name.span);
-                value.items.iter().map(|item| Some(item.id)).collect()
-            }
-            Some(Err(Fault)) => vec![Some(self.model.expressions.push(Node::Number(0.0))); size],
-            None => vec![None; size],
-        };
-        let first = self.model.coordinates.len();
-        let unit = kind.unit.text.clone();
-        for (component, guess) in component_names(&name.text, &declared.shape).zip(guesses) {
-            let unit = unit.clone();
-            self.model.coordinates.push(Coordinate {
-                name: component,
-                unit,
-                dimension,
-                turns,
-                guess,
-                span: name.span,
-            });
-        }
-        let ids = (first..first + size).map(|i| self.model.expressions.push(Node::Coordinate(i))).collect();
-        self.define(name, &declared, ids);
-        let shape = declared.shape;
-        self.model.coordinate_fields.push(CoordinateField { name: name.clone(), docs, unit, shape, first });
-    }
-
-    fn state(&mut self, name: &Name, kind: &Type, start: Option<&Expression>) {
-        let declared = self.declared(kind);
-        if !self.owns(name) {
-            return;
-        }
-        let (dimension, size) = (declared.dimension, declared.size);
-        let starts = start.filter(|_| !declared.faulty).map(|expression| {
-            self.elaborate(|work| {
-                let value = work.value(expression)?;
-                let place = Place::Value(name.text.clone());
-                let value =
-                    work.concerning(place, (expression, None), |work| initialiser(work, value, dimension))?;
-                let value = filling(work, value, &declared.shape)?;
-                Ok::<_, Fault>(value.items.iter().map(|item| item.id).collect::<Vec<Id>>())
-            })
-        });
-        let starts = starts.and_then(Result::ok).unwrap_or_default();
-        let states = &mut self.model.dynamics.get_or_insert_default().states;
-        let first = states.len();
-        for (index, component) in component_names(&name.text, &declared.shape).enumerate() {
-            states.push(FirstOrderState {
-                name: component,
-                unit: kind.unit.text.clone(),
-                start: starts.get(index).copied(),
-                rate: None,
-                span: name.span,
-            });
-        }
-        let ids = (first..first + size).map(|i| self.model.expressions.push(Node::State(i))).collect();
-        self.define(name, &declared, ids);
     }
 
     /// `let`s and curves, each after those that it uses.
@@ -588,30 +301,6 @@ impl Declarations<'_> {
             Declares::Value | Declares::Element | Declares::Rows | Declares::Rate => {}
         }
     }
-}
-
-/// A type that was declared.
-struct Declared {
-    dimension: Dimension,
-    /// `Bare::Angle` if its values are angles.
-    bare: Bare,
-    shape: Vec<usize>,
-    size: usize,
-    /// Reported; the rest is a guess.
-    faulty: bool,
-}
-
-/// `p`, or `p.0`, `p.1`, …, or `p.0.0`, … for the components of an array.
-pub fn component_names<'a>(name: &'a str, shape: &'a [usize]) -> impl Iterator<Item = String> + 'a {
-    (0..shape.iter().product()).map(move |flat| {
-        let mut suffix = String::new();
-        let mut rest = flat;
-        for length in shape.iter().rev() {
-            suffix = format!(".{}{suffix}", rest % length.max(&1));
-            rest /= length.max(&1);
-        }
-        format!("{name}{suffix}")
-    })
 }
 
 fn same_place(a: proc_macro2::Span, b: proc_macro2::Span) -> bool {

@@ -2,7 +2,7 @@
 
 use proc_macro2::Span;
 
-use super::declarations::ANY;
+use super::declared_fields::ANY;
 use super::expression::{Id, Node};
 use super::resolver::Resolver;
 use super::unit_faults::Place;

@@ -116,8 +116,8 @@ impl Expressions {
         &self.calls
     }
 
-    /// Before: a number of the unit `dimension`. After: in metres, square metres and so on it has its name as a length of the
-    /// text, the side of an area or a volume; in another unit with metres it is noted. Zero is none.
+    /// Before: a number of the unit `dimension`. After: in a power of the metre it has its name as a length of the text, of
+    /// an area or a volume the side. In another unit with metres it is noted. Zero is none.
     pub fn name_length(
         &mut self,
         id: Id,

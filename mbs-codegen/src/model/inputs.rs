@@ -5,8 +5,8 @@ use super::expression::{Id, Node};
 use super::{Field, Model, Role};
 use crate::diagnostics::Diagnostics;
 
-/// Before: a resolved model. After: inputs without rates are reported where their rates would silently be 0: in a row, in the
-/// place of a body or of a spring, or in an expression whose rate a force or an output uses.
+/// Before: a resolved model. After: inputs without rates are reported where their rates would silently be 0. Such places are
+/// a row, the place of a body or of a spring, and an expression whose rate a force or an output uses.
 pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let inputs: Vec<&Field> = model.fields.iter().filter(|field| field.role == Role::Input).collect();
     if inputs.is_empty() {

@@ -5,17 +5,21 @@ mod bare_angles;
 mod bodies;
 mod compound;
 mod constraints;
+mod contact;
 pub mod counts;
 pub mod curves;
 pub mod declarations;
+mod declared_coordinates;
+mod declared_fields;
 mod declared_functions;
+pub mod declared_types;
 mod drives;
 pub mod dynamics;
 pub mod elaborate;
 pub mod elaborator;
 pub mod expression;
 pub mod forces_by_name;
-mod friction_contact;
+mod friction;
 pub mod functions;
 mod inertia;
 pub mod initialiser;
@@ -117,8 +121,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// `true` if functions of the text can be bounded over parts of a motion: it calls no function of the caller's, and no drive
-    /// prescribes a rate.
+    /// `true` if functions of the text can be bounded over parts of a motion. So it is where the text calls no function of the
+    /// caller and no drive prescribes a rate.
     pub fn can_be_enclosed(&self) -> bool {
         self.functions.is_empty() && self.phases.is_empty()
     }

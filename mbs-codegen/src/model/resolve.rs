@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::Span;
 
 use super::counts::MOST_ROUNDS;
-use super::declarations::component_names;
+use super::declared_types::component_names;
 use super::expression::Node;
 use super::initialiser::{definition, fits_shape, initialiser};
 use super::masses_and_forces::is_dynamic;

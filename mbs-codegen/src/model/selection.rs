@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::names::{Elsewhere, report_double};
 use crate::diagnostics::{Diagnostics, nearest};
-use crate::syntax::ast::{Declares, Name, Statement, StatementKind};
+use crate::syntax::ast::{Name, Statement, StatementKind};
 use crate::syntax::rust_identifiers::UNUSABLE;
 use crate::syntax::{Header, NAMELESS, OWN, declares_coordinate, stand_in};
 
@@ -171,7 +171,8 @@ impl<'a> Effects<'a> {
         let mut declared = BTreeSet::new();
         let statements =
             self.parts.iter().filter(|(effect, _)| belongs(*effect)).filter(|(effect, statement)| {
-                let is_new = declares(&statement.kind).is_none_or(|name| declared.insert(name));
+                let name = statement.kind.declared().map(|(kind, name)| (kind, name.text.as_str()));
+                let is_new = name.is_none_or(|name| declared.insert(name));
                 is_new || !effect.is_some_and(|effect| self.is_repeated(effect))
             });
         let effects = chosen.iter().filter(|index| !self.is_repeated(**index));
@@ -192,13 +193,13 @@ impl<'a> Effects<'a> {
         for (effect, statement) in &self.parts {
             let effect = (*effect).filter(|effect| !chosen.contains(effect));
             let Some((effect, _)) = effect.and_then(|effect| self.selected.get(effect)) else { continue };
-            let names = match declares(&statement.kind) {
+            let names = match statement.kind.declared() {
                 Some(("value", name)) => Some((name, &mut elsewhere.values)),
                 Some(("load", name)) => Some((name, &mut elsewhere.loads)),
                 _ => None,
             };
             if let Some((name, names)) = names {
-                names.insert(name.to_owned(), effect.text.clone());
+                names.insert(name.text.clone(), effect.text.clone());
             }
         }
         elsewhere
@@ -221,42 +222,6 @@ impl<'a> Effects<'a> {
             );
         }
     }
-}
-
-/// The name that a statement declares, after the kind of names that it must differ from.
-fn declares(kind: &StatementKind) -> Option<(&'static str, &str)> {
-    let (kind, name) = match kind {
-        StatementKind::Const { name, .. }
-        | StatementKind::Param { name, .. }
-        | StatementKind::Input { name, .. }
-        | StatementKind::Coord { name, .. }
-        | StatementKind::Let { name, .. }
-        | StatementKind::Function { name, .. }
-        | StatementKind::Curve { name, .. }
-        | StatementKind::State { name, .. } => ("value", name),
-        StatementKind::Faulty { name, declares: Declares::Element, .. } => ("load", name),
-        StatementKind::Faulty { declares: Declares::Rows | Declares::Rate, .. } => return None,
-        StatementKind::Faulty { name, .. } => ("value", name),
-        StatementKind::Constraint { name, .. } | StatementKind::Drive { name, .. } => ("rows", name),
-        StatementKind::Branch { name, .. } => ("branch", name),
-        StatementKind::Limit { name, .. } => ("limit", name),
-        StatementKind::Out { name, .. } => ("output", name),
-        StatementKind::Element { name, .. }
-        | StatementKind::Load { name, .. }
-        | StatementKind::Energy { name, .. }
-        | StatementKind::Pin { name, .. } => ("load", name),
-        StatementKind::Independent { .. }
-        | StatementKind::Rate { .. }
-        | StatementKind::Start { .. }
-        | StatementKind::For(_)
-        | StatementKind::EndFor
-        | StatementKind::Effect { .. }
-        | StatementKind::EndEffect
-        | StatementKind::Scene { .. }
-        | StatementKind::EndScene
-        | StatementKind::Picture { .. } => return None,
-    };
-    Some((kind, &name.text))
 }
 
 /// `true` if the types of the scene can have their names; a clash is reported.

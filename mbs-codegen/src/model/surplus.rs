@@ -5,7 +5,7 @@ use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Statement, StatementKind};
 
 /// Before: a text without faults, and the models of its scenes. After: constraints that are marked `redundant` are reported where
-/// no scene has more rows than coordinates: without masses all rows are then needed to fix the coordinates.
+/// no scene has more rows than coordinates. Without masses all rows are then needed to fix the coordinates.
 pub fn check<'a>(
     statements: &[Statement],
     mut models: impl Iterator<Item = &'a Model> + Clone,

@@ -40,28 +40,10 @@ pub(crate) fn declarations(source: &str, text: &Text, model: &Model) -> Vec<Decl
     named.iter().filter_map(declaration).collect()
 }
 
-/// Name that a statement declares.
+/// Name that a statement declares; none of a statement that could not be read to its end.
 fn named(kind: &StatementKind) -> Option<&Name> {
-    match kind {
-        StatementKind::Const { name, .. }
-        | StatementKind::Param { name, .. }
-        | StatementKind::Input { name, .. }
-        | StatementKind::Coord { name, .. }
-        | StatementKind::Let { name, .. }
-        | StatementKind::Function { name, .. }
-        | StatementKind::Curve { name, .. }
-        | StatementKind::Constraint { name, .. }
-        | StatementKind::Drive { name, .. }
-        | StatementKind::Branch { name, .. }
-        | StatementKind::Limit { name, .. }
-        | StatementKind::Out { name, .. }
-        | StatementKind::Element { name, .. }
-        | StatementKind::Pin { name, .. }
-        | StatementKind::Load { name, .. }
-        | StatementKind::Energy { name, .. }
-        | StatementKind::State { name, .. } => Some(name),
-        _ => None,
-    }
+    let is_faulty = matches!(kind, StatementKind::Faulty { .. });
+    kind.declared().filter(|_| !is_faulty).map(|(_, name)| name)
 }
 
 /// Statements of a text as places in it, those in braces each by itself.

@@ -4,7 +4,7 @@ use super::Preset;
 use super::content::Reader;
 use super::found::numbered;
 use crate::diagnostics::nearest;
-use crate::model::declarations::component_names;
+use crate::model::declared_types::component_names;
 use crate::model::initialiser::{filling, initialiser, numbers};
 use crate::model::units::Dimension;
 use crate::model::value::Fault;

@@ -56,7 +56,7 @@ impl Dyad {
 
 /// Before: the residuals of a block of two rows, and its two coordinates. After: the dyad that it is, if it is one.
 ///
-/// Vanishing coefficients and similarity of matrices are tested at a few fixed values of all leaves: an identity holds at
+/// Vanishing coefficients and similarity of matrices are tested at a few fixed values of all leaves. An identity holds at
 /// each, anything else fails at one. Assembly starts from the dyad found, and Newton's method decides.
 pub fn recognise(g: &mut Graph, residuals: [NodeId; 2], unknowns: [usize; 2]) -> Option<Dyad> {
     let mut directions = Directions::new();

@@ -22,8 +22,8 @@ pub struct Mobility {
     pub bodies: usize,
     /// Point masses.
     pub points: usize,
-    /// Freedoms that all of these would have without joints: three of a body in the plane, six of one in space, one a
-    /// dimension of a point.
+    /// Degrees of freedom that all of these would have without joints. A body has 3 in the plane and 6 in space,
+    /// a point one for each dimension.
     pub apart: usize,
     /// Kinetic energies of the text: masses in addition to the declared bodies, which are in none of these counts.
     pub energies: usize,
@@ -37,8 +37,9 @@ impl Mobility {
 
     /// Grübler's count: coordinates less rows of constraints, those that follow from others among them.
     ///
-    /// Grübler counts 3 a body less 2 a joint, in space 6 less 5. Each set of coordinates leaves out as many freedoms of bodies as
-    /// equations of joints, so that the difference is the same in relative, reference-point or natural ones.
+    /// Grübler counts 3 for each body less 2 for each joint, in space 6 less 5. Each set of coordinates leaves out as many
+    /// freedoms of bodies as equations of joints. So the difference is the same in relative, reference-point and natural
+    /// coordinates.
     /// Source: García de Jalón & Bayo 1994, §2.1.
     pub fn grubler(&self) -> isize {
         difference(self.coordinates, self.constraints)

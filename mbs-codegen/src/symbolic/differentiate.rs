@@ -21,8 +21,8 @@ pub fn tangent(
     roots.iter().map(|root| tangents.get(root.index()).copied().flatten()).collect()
 }
 
-/// Derivatives of `roots` along one leaf after the other: of each root the places of the leaves in `along` with the
-/// derivatives that are no structural zeros. As [`tangent`] for each leaf, over the nodes alone that the leaf moves.
+/// Derivatives of `roots` along one leaf after the other, without structural zeros. Of each root: pairs of a leaf's
+/// place in `along` and the derivative. As [`tangent`] for each leaf, over the nodes alone that the leaf moves.
 pub fn tangents(graph: &mut Graph, roots: &[NodeId], along: &[Leaf]) -> Vec<Vec<(usize, NodeId)>> {
     let users = Users::of(graph, roots);
     let mut roots_of: BTreeMap<NodeId, Vec<usize>> = BTreeMap::new();

@@ -1,7 +1,7 @@
 //! Construction of nodes by numbered rewrite rules.
 //!
 //! Every rule is directional and exact in floating point, unless it says what it may lose. There is no reordering
-//! of sums, no cancelling of `x/x` or `x − x`, no expansion of products, and no `0·x → 0`: structural zeros never
+//! of sums, no cancelling of `x/x` or `x − x`, no expansion of products, and no `0·x → 0`. Structural zeros never
 //! enter the graph, because differentiation leaves them out. Each rule has a property test of its name.
 //!
 //! | rule | rewrite | loses |

@@ -3,9 +3,10 @@
 use super::ast::{Declares, Equation, Expression, Item, Name, StatementKind};
 use super::curve;
 use super::expression::expression;
+use super::for_loop::read_loop;
 use super::foreign;
 use super::parser::{GivenUp, Parser, Read};
-use super::statement::{at_statement, end, read_loop};
+use super::statement_end::{at_statement, end};
 use super::tokens::{Token, TokenKind};
 
 const CONSTRAINT: &str = "write `constraint pin { x == L*cos(phi); y == L*sin(phi); }`";

@@ -3,7 +3,7 @@
 use super::ast::{Declares, Expression, Instruction, Operation, StatementKind};
 use super::expression::expression;
 use super::parser::{GivenUp, Parser, Read};
-use super::statement::end;
+use super::statement_end::end;
 use super::tokens::TokenKind;
 
 const CURVE: &str = "write `curve cam = polar pitch about C turned theta;`";

@@ -7,7 +7,7 @@ use super::constraint::equation;
 use super::expression::expression;
 use super::foreign;
 use super::parser::{Parser, Read};
-use super::statement::end;
+use super::statement_end::end;
 use super::unit::declared_type;
 
 const BODY: &str = "write `body rod { mass: 2kg, com: [x, y], inertia: 0.1, angle: phi }`";

@@ -5,7 +5,7 @@ use proc_macro2::Span;
 use super::number_notations::touch;
 use super::parser::{GivenUp, Parser, Read, doc_attribute};
 use super::quotation::{length_of_group, operand_before, operand_behind, quoted, until_end};
-use super::statement::at_statement;
+use super::statement_end::at_statement;
 use super::tokens::{Token, TokenKind};
 use crate::diagnostics::Diagnostics;
 

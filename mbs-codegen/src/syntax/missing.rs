@@ -8,7 +8,7 @@ use super::number_notations;
 use super::parser::{GivenUp, Parser, Read};
 use super::picture;
 use super::quotation::{operand_before, operand_behind, quoted, until_end};
-use super::statement::at_statement;
+use super::statement_end::at_statement;
 use super::tokens::{Token, TokenKind};
 use super::unit_symbols::coherent_unit;
 

@@ -2,10 +2,17 @@
 
 #[allow(missing_docs, reason = "fields are named as the grammar names them")]
 pub mod ast;
+mod branch_and_limit;
 mod constraint;
 mod curve;
+mod declaration;
+mod declared_names;
+mod dot_suffix;
 mod dynamics;
 mod expression;
+#[cfg(test)]
+mod expression_tests;
+mod for_loop;
 mod foreign;
 mod header;
 mod keywords;
@@ -15,10 +22,12 @@ mod number_notations;
 mod parser;
 pub mod picture;
 mod quotation;
+mod references;
 pub mod rust_identifiers;
 mod scene;
 mod source;
 mod statement;
+mod statement_end;
 pub mod tokens;
 mod unit;
 pub mod unit_symbols;
@@ -27,13 +36,13 @@ pub mod unreadable;
 use proc_macro2::{Span, TokenStream};
 
 use crate::diagnostics::Diagnostics;
-pub use expression::{OF_FORCES, REFERRING};
 #[cfg(test)]
 pub use foreign::CALLED;
 pub use foreign::NUMBER_TYPES;
 use foreign::without_comments;
 pub use header::{Header, OWN};
 pub use keywords::{LATER, STATEMENTS};
+pub use references::{OF_FORCES, REFERRING};
 pub use scene::NAMELESS;
 use statement::parse;
 

@@ -1,5 +1,5 @@
-//! Numbers as other languages write them: in another base, with a dot or an exponent that ends them, with a unit in brackets of
-//! another kind. Each is one fault, whose cure is the number in decimal digits with its unit.
+//! Numbers as other languages write them: in another base, ending in a dot or an exponent, or with the unit in other
+//! brackets. Each is one fault, whose cure is the number in decimal digits with its unit.
 
 use proc_macro2::Span;
 

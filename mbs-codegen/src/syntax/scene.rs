@@ -6,7 +6,7 @@ use super::ast::{Name, StatementKind};
 use super::foreign;
 use super::missing;
 use super::parser::{GivenUp, Parser, Read};
-use super::statement::{at_statement, end};
+use super::statement_end::{at_statement, end};
 use super::tokens::TokenKind;
 use crate::diagnostics::Diagnostics;
 

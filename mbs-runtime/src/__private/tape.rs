@@ -1,10 +1,10 @@
 //! Operations of long irregular functions as data: one loop works through them, where code of as many lines would keep a
 //! compiler busy for minutes.
 //!
-//! A tape is a row of runs, each of one operation. A run has its sign, the number of the array that it reads (2 bytes), the
-//! number of its rounds (2 bytes), and its operands, round by round. The result of a round follows all earlier results.
-//! Numbers of values take 2 bytes, places in arrays 3, the lowest first. The operations are those of straight code, so the
-//! results have the same bits.
+//! A tape is a row of runs, each of one operation. A run has its opcode (1 byte), the number of the array that it reads (2
+//! bytes), and the number of its rounds (2 bytes). Its operands follow, round by round. The result of a round follows all
+//! earlier results. Numbers of values take 2 bytes, places in arrays 3, the lowest first. The operations are those of
+//! straight code, so the results have the same bits.
 
 use core::cell::Cell;
 use core::slice::from_ref;
@@ -22,26 +22,26 @@ const SIDE_BY_SIDE: usize = 8;
 pub fn run<T: Scalar>(mut tape: &[u8], arrays: &[&[T]], values: &mut [T], passed: &[Cell<T>]) {
     let values = Cell::from_mut(values).as_slice_of_cells();
     let mut machine = Machine { values, next: 0 };
-    while let Some(([sign, low, high, few, many], behind)) = tape.split_first_chunk() {
+    while let Some(([opcode, low, high, few, many], behind)) = tape.split_first_chunk() {
         let array = usize::from(u16::from_le_bytes([*low, *high]));
         let rounds = usize::from(u16::from_le_bytes([*few, *many]));
-        let Some((round, behind)) = behind.split_at_checked(width(*sign).saturating_mul(rounds)) else {
+        let Some((round, behind)) = behind.split_at_checked(width(*opcode).saturating_mul(rounds)) else {
             return;
         };
         tape = behind;
-        match sign {
+        match opcode {
             b'@' => machine.read(arrays.get(array).copied().unwrap_or_default(), round),
             b'<' => machine.read_passed(passed, round),
             b'>' => machine.pass(passed, round),
             b'#' => machine.numbers(round),
-            _ => machine.compute(*sign, round),
+            _ => machine.compute(*opcode, round),
         }
     }
 }
 
 /// Bytes that a round of an operation takes.
-fn width(sign: u8) -> usize {
-    match sign {
+fn width(opcode: u8) -> usize {
+    match opcode {
         b'@' | b'<' => 3,
         b'>' => 5,
         b'#' | b'?' => 8,
@@ -108,8 +108,8 @@ impl<'a, T: Scalar> Machine<'a, T> {
         }
     }
 
-    fn compute(&mut self, sign: u8, round: &[u8]) {
-        match sign {
+    fn compute(&mut self, opcode: u8, round: &[u8]) {
+        match opcode {
             b'+' => self.of_two(round, |a, b| a + b),
             b'-' => self.of_two(round, |a, b| a - b),
             b'*' => self.of_two(round, |a, b| a * b),

@@ -1,5 +1,7 @@
 //! Several mechanisms in motion side by side: designs, or phases of one turn.
 
+mod assembly;
+mod changes;
 pub(crate) mod lane_state;
 pub(crate) mod statistics;
 
@@ -9,11 +11,8 @@ use core::f64::consts::PI;
 use crate::batch::lane_state::Standing;
 use crate::batch::statistics::Notes;
 use crate::block_solvers::convergence::Statistics;
-use crate::failure::checks::are_valid;
 use crate::failure::{Failure, FailureKind};
-use crate::kinematics::homotopy::{LARGEST_PIECE, differ, largest_change, put_short_way_round};
 use crate::kinematics::link_lengths;
-use crate::linear_algebra::vectors::weights;
 use crate::mechanism::phase::Phase;
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::lanes::{LaneMask, Lanes};
@@ -101,107 +100,6 @@ where
     S::Lane: Kinematic<R, N, M>,
     R: Real,
 {
-    /// Assembles each lane of `mechanism` from its `guess` (L of N) at its time `t` (L, s).
-    ///
-    /// # Errors
-    /// The first lane that cannot be assembled, with its failure; see [`Stepper::assemble`]. To go on with those that can:
-    /// [`assemble_each`](Self::assemble_each).
-    #[allow(
-        clippy::result_large_err,
-        reason = "once, before the motion, and there is no heap to keep a failure on"
-    )]
-    pub fn assemble(mechanism: S, guess: &[[R; N]; L], t: [R; L]) -> Result<Self, (usize, Failure)> {
-        let none = FailureKind::NonFinite { name: "t", line: 0 }.without_time();
-        let batch = Self::assemble_each(mechanism, guess, t)
-            .map_err(|failures| (0, failures.first().copied().unwrap_or(none)))?;
-        let failed = batch.retired.iter().enumerate().find_map(|(lane, failure)| Some((lane, (*failure)?)));
-        failed.map_or(Ok(batch), Err)
-    }
-
-    /// Assembles those lanes of `mechanism` that can be, each from its `guess` (L of N) at its time `t` (L, s).
-    ///
-    /// The others are out, as if [retired](Self::retire) with their failure, which [`failures`](Self::failures) has; their
-    /// time, coordinates and rates are NaN until they are [assembled again](Self::revive).
-    ///
-    /// # Errors
-    /// The failure of each lane where no lane can be assembled; see [`Stepper::assemble`].
-    #[allow(
-        clippy::result_large_err,
-        reason = "once, before the motion, and there is no heap to keep a failure on"
-    )]
-    pub fn assemble_each(mechanism: S, guess: &[[R; N]; L], t: [R; L]) -> Result<Self, [Failure; L]> {
-        const { assert!(L > 0, "a batch has one lane or more") }
-        let assembled: [Result<_, Failure>; L] = from_fn(|lane| {
-            let start = guess.get(lane).copied().unwrap_or([R::constant(0.0); N]);
-            Stepper::assemble(mechanism.lane(lane), start, Lanes(t).lane(lane))
-        });
-        let retired = assembled.each_ref().map(|result| result.as_ref().err().copied());
-        let Some(first) = assembled.iter().find_map(|result| result.as_ref().ok()).cloned() else {
-            return Err(retired.map(|failure| {
-                failure.unwrap_or(FailureKind::NonFinite { name: "t", line: 0 }.without_time())
-            }));
-        };
-        let (zero, none) = (Lanes([R::constant(0.0); L]), Lanes([R::constant(f64::NAN); L]));
-        let parameters = mechanism.parameters();
-        let steppers = assembled.map(|result| result.unwrap_or_else(|_| first.clone()));
-        let (q, qd, qdd) = ([none; N], [none; N], [none; N]);
-        let out = LaneMask::new(retired.map(|failure| failure.is_some()));
-        let (margin, notes) = (zero, Notes::none());
-        let weights = weights(&mechanism.coordinate_scales(&parameters));
-        let mut batch = Batch {
-            solved: mechanism.values(),
-            mechanism,
-            parameters,
-            weights,
-            t: none,
-            clock: Phase::new(none, second()),
-            q,
-            qd,
-            qdd,
-            margin,
-            notes,
-            out,
-            waits: out,
-            changed: [false; L],
-            folds: [false; L],
-            outdated: [false; L],
-            retired,
-            steppers,
-        };
-        for (lane, failure) in retired.iter().enumerate() {
-            if failure.is_none() {
-                batch.gather(lane);
-            }
-        }
-        Ok(batch)
-    }
-
-    /// Failures of the lanes that are out, L; `None` of those that move.
-    pub fn failures(&self) -> &[Option<Failure>; L] {
-        &self.retired
-    }
-
-    /// Takes lane `lane` out: its steps answer `failure` and cost nothing, while a lane that fails in every step searches in
-    /// every one. It stays where it is; nothing happens where there is no such lane.
-    pub fn retire(&mut self, lane: usize, failure: Failure) {
-        set(&mut self.retired, lane, Some(failure));
-        self.note_waiting(lane);
-    }
-
-    /// Assembles lane `lane` anew from its `guess` (N) at its time `t` (s), retired or not.
-    ///
-    /// # Errors
-    /// If it cannot be assembled: nothing has changed then. See [`Stepper::assemble`].
-    #[allow(clippy::result_large_err, reason = "seldom, and there is no heap to keep a failure on")]
-    pub fn revive(&mut self, lane: usize, guess: &[R; N], t: R) -> Result<(), Failure> {
-        let stepper = Stepper::assemble(self.mechanism.lane(lane), *guess, t)?;
-        set(&mut self.steppers, lane, stepper);
-        set(&mut self.outdated, lane, false);
-        set(&mut self.retired, lane, None);
-        self.gather(lane);
-        Ok(())
-    }
-
     /// Moves each lane on to its time `t` (L, s).
     ///
     /// Returns the statistics of each lane's step, or its failure. A lane that failed is bit for bit what it was, the others
@@ -343,72 +241,6 @@ where
             self.notes.count(lane, notes.passages(lane), notes.orientation(lane));
             Ok(notes.statistics(lane))
         })
-    }
-
-    /// Changes parameters or inputs of any lanes; see [`Stepper::change`].
-    pub fn change<X>(&mut self, change: impl FnOnce(&mut S) -> X) -> X {
-        if self.changed == [false; L] {
-            self.solved = self.mechanism.values();
-        } else {
-            self.keep_solved();
-        }
-        let noted = !(S::TURNING_INPUTS.is_empty() && S::FOLDING.is_empty());
-        let before = noted.then(|| self.mechanism.values());
-        let result = change(&mut self.mechanism);
-        if let Some(before) = before {
-            self.go_short_way_round(&before);
-            let now = self.mechanism.values();
-            let changed = self.changed;
-            for (lane, folds) in self.folds.iter_mut().enumerate() {
-                let [old, new] = [&before, &now].map(|values| values.as_ref());
-                let differs = differ(S::FOLDING, old, new, lane);
-                *folds = (at(&changed, lane, false) & *folds) | differs;
-            }
-        }
-        self.parameters = self.mechanism.parameters();
-        self.weights = weights(&self.mechanism.coordinate_scales(&self.parameters));
-        // The steppers get theirs where they are needed.
-        (self.changed, self.outdated) = ([true; L], [true; L]);
-        self.waits = self.out | !are_valid(&self.mechanism);
-        let change = largest_change(S::ANGLES, &self.solved, &self.mechanism.values());
-        self.waits = self.waits | Lanes::constant(LARGEST_PIECE).less(change);
-        // Only its own stepper knows what a lane was changed from.
-        self.waits = self.waits | LaneMask::new(self.folds);
-        result
-    }
-
-    /// Lets inputs that turn go the short way round from their values `before` a change, in each lane.
-    fn go_short_way_round(&mut self, before: &S::Values) {
-        let now = self.mechanism.values();
-        for index in S::TURNING_INPUTS.iter().map(|index| usize::from(*index)) {
-            let solved = self.solved.as_mut().get_mut(index);
-            let (Some(solved), Some(before), Some(now)) =
-                (solved, before.as_ref().get(index), now.as_ref().get(index))
-            else {
-                continue;
-            };
-            for (lane, stepper) in self.steppers.iter_mut().enumerate() {
-                let (from, to) = ([before.lane(lane)], [now.lane(lane)]);
-                if let Some(solved) = solved.0.get_mut(lane) {
-                    put_short_way_round(&[0], core::slice::from_mut(solved), &from, &to);
-                }
-                // That of a lane next to a singular position, which is led from farther away.
-                if let Some(kept) = stepper.anchor.values.as_mut().get_mut(index) {
-                    put_short_way_round(&[0], core::slice::from_mut(kept), &from, &to);
-                }
-            }
-        }
-    }
-
-    /// Takes parameters, inputs and phases of the lanes that were solved since they were changed last.
-    #[cold]
-    #[inline(never)]
-    fn keep_solved(&mut self) {
-        let changed = LaneMask::new(self.changed);
-        let now = self.mechanism.values();
-        for (old, new) in self.solved.as_mut().iter_mut().zip(now.as_ref()) {
-            *old = Lanes::select(changed, *old, *new);
-        }
     }
 
     /// The mechanism in lane `lane` alone; `None` where there is no such lane, or it has never been assembled.

@@ -13,9 +13,9 @@ pub(super) struct Notes<R, const L: usize> {
     pub drift: Drift<Lanes<R, L>>,
     residual: Lanes<R, L>,
     correction: Lanes<R, L>,
-    /// A number, so that it is written like the others.
+    /// Stored as `R`, so that all lanes are written with one vector store.
     row: Lanes<R, L>,
-    /// As well.
+    /// Stored as `R` too.
     evaluations: Lanes<R, L>,
     fallback: [bool; L],
     passed: [bool; L],

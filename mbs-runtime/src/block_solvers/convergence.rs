@@ -121,7 +121,7 @@ pub struct Diagnosis<T: Scalar> {
     pub evaluations: u32,
     /// `true` if any block needed more than its first method.
     pub fallback: bool,
-    /// The worst row of the blocks that needed more than plain steps; in a lane that failed, of the first that did.
+    /// The worst row of the blocks that needed more than fast steps; in a lane that failed, of the first that did.
     pub worst: Worst<T>,
     /// The worst row of the others, its ratio not yet divided out.
     close: Worst<T>,

@@ -1,4 +1,4 @@
-//! Newton's method as it goes next to a regular position: nothing is asked on the way, everything at its end.
+//! Newton's method without safeguards, for steps close to a regular position; the caller checks the result.
 
 use crate::block_solvers::convergence::{own_rounding, required};
 use crate::linear_algebra::factorization::Factorization;

@@ -9,4 +9,6 @@ pub(crate) mod gauss_newton;
 pub(crate) mod levenberg_marquardt;
 pub(crate) mod multistart;
 pub(crate) mod newton;
+#[cfg(test)]
+mod newton_tests;
 pub(crate) mod trace;

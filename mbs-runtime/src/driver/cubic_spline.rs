@@ -9,8 +9,9 @@ use crate::scalar::number::Scalar;
 /// A cubic spline with `P` knots, twice continuously differentiable everywhere.
 ///
 /// Beyond its ends it goes on with value, slope and curvature: a straight line where the end is natural, a parabola
-/// elsewhere. Through points of a smooth function the error of a clamped spline falls with the fourth power of their
-/// distance, that of the derivative of order k with the power 4 − k; near a natural end only with the power 2 − k.
+/// elsewhere. Through points of a smooth function the error of a clamped spline falls with the fourth power of the
+/// distance between knots. That of its derivative of order k falls with the power 4 − k, near a natural end only
+/// with the power 2 − k.
 /// Source: de Boor 2001, A Practical Guide to Splines, ch. IV, V, XIV.
 ///
 /// ```

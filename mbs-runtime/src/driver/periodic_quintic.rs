@@ -8,9 +8,9 @@ use crate::scalar::number::Scalar;
 
 /// A periodic quintic spline with `P` knots, four times continuously differentiable: a measured cam.
 ///
-/// Through points of a smooth function the error of the spline falls with the sixth power of their distance, that of the
-/// derivative of order k with the power 6 − k. With fewer knots than points it smooths them: rounding and noise grow
-/// with the square of the knots' density in the second derivative.
+/// Through points of a smooth function the error of the spline falls with the sixth power of the distance between knots.
+/// That of its derivative of order k falls with the power 6 − k. With fewer knots than points it smooths them: rounding
+/// and noise grow with the square of the knots' density in the second derivative.
 /// Source: de Boor 2001, A Practical Guide to Splines, ch. IX, XIV.
 ///
 /// ```

@@ -66,7 +66,7 @@
 //! | [`SemiImplicitEuler`] | 1, fixed steps | the cheapest step |
 //! | [`AugmentedLagrangian`] | 2, implicit, fixed steps | stiff forces, redundant rows |
 //! | [`Extrapolated`] | 3, implicit, fixed steps | the same, where forces damp what the step does not show |
-//! | [`GeneralizedAlpha`] | 2, implicit, fixed steps | stiff vibrations that shall die out |
+//! | [`GeneralizedAlpha`] | 2, implicit, fixed steps | stiff vibrations, damped numerically |
 
 pub(crate) mod analyses;
 pub(crate) mod equilibrium;

@@ -34,8 +34,8 @@ pub fn least_independent_column<R: Real, const M: usize, const K: usize>(
     pivoted(columns, R::constant(0.0)).order.last().copied().unwrap_or(0)
 }
 
-/// The columns of `a` in the order of their pivots in the reference metric, and the rank: so many of them, the first, determine
-/// the others.
+/// The columns of `a` in the order of their pivots in the reference metric, and the rank. As many columns as the rank, the
+/// first ones, determine the others.
 pub fn pivot_order<R: Real, const M: usize, const K: usize>(
     a: &[[R; K]; M],
     row_scales: &[R; M],

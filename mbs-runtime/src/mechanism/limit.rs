@@ -24,8 +24,8 @@ pub struct Warning {
     pub value: f64,
     /// The bound that is near.
     pub bound: f64,
-    /// Distance to it, as a share of the range, of the bound itself where the range has one bound alone: 0 at the bound, at
-    /// most [`WARNING_SHARE`].
+    /// Distance to it as a share of the range: 0 at the bound, at most [`WARNING_SHARE`]. Where the range has one bound
+    /// alone, a share of that bound.
     pub left: f64,
 }
 

@@ -8,8 +8,8 @@ use crate::tolerances::is_single;
 
 /// The phase of a `drive … : rate(x) == …`, with its rates: a signal that the stepper moves on.
 ///
-/// Sum and increments are compensated. After any number of steps the error is the rounding of its own value (1e-10 rad after
-/// 1e5 turns in `f64`), and not one rounding a step.
+/// Sum and increments are compensated. After any number of steps the error is one rounding of its value, not one for each
+/// step. In `f64` that is 1e-10 rad after 1e5 turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Phase<T> {
     /// Value, in the unit of the driven coordinate.

@@ -12,7 +12,7 @@ pub trait Reveal<T: Scalar = f64>: Sized + 'static {
     fn reveal<V: Visitor<Self, T>>(self, visitor: V) -> V::Output;
 }
 
-/// The same mechanism in other numbers, its parameters and inputs rounded to them: for reference solutions of more digits, and for
+/// The same mechanism in other numbers, its parameters and inputs rounded to them. For reference solutions of more digits, and for
 /// comparisons of single with double precision.
 ///
 /// The macro implements it for every scene in double precision.

@@ -1,4 +1,4 @@
-//! A step as it goes next to a regular position: straight on, with one decision at the end.
+//! Fast path of a step, scalar or SIMD: unguarded Newton's method, with all acceptance tests at the end.
 
 use core::array::from_fn;
 

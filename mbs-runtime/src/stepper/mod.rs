@@ -1,4 +1,4 @@
-//! A mechanism in motion: state and mechanism in one place, one call a step.
+//! Kinematic time stepper: owns the mechanism and its state, one call a step.
 
 pub(crate) mod bounded_step;
 pub(crate) mod dependent_rows;

@@ -77,7 +77,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         Some(self.state.follow(trial, t))
     }
 
-    /// Becomes the state at a position of a plain step, closed further; `None` where there is something against it.
+    /// Becomes the state at a position of a fast step, closed further; `None` where there is something against it.
     fn polished(&mut self, q: [R; N], statistics: Statistics, t: R) -> Option<Statistics> {
         let position = self.mechanism.position(&self.parameters, &q, t);
         let mut found = SolvedPosition { t, q, position, statistics, open: None };

@@ -100,7 +100,7 @@ impl<R: Real, const N: usize> StepperState<R, N> {
         self.passages = self.passages.saturating_add(u32::from(passed));
     }
 
-    /// Becomes the state at the end of a plain step without a passage. Returns its cost: read from the state, it would wait for
+    /// Becomes the state at the end of a fast step without a passage. Returns its cost: read from the state, it would wait for
     /// the memory.
     #[inline(always)]
     pub(crate) fn follow(&mut self, trial: &FastStep<R, N>, t: R) -> Statistics {

@@ -53,7 +53,7 @@ pub(crate) const FINE: Law = Law::fixed(0.0625);
 /// a hundredth, or rounding of the position.
 pub(crate) const QUICK_APPROACH: Law = Law::at_least(1e-5, 2e3);
 
-/// Movement of a link over the margin that is ignored in a plain step, of links so short or of coordinates that do not move: rounding
+/// Movement of a link over the margin that is ignored in a fast step, of links so short or of coordinates that do not move: rounding
 /// to a hundredth where that is more.
 pub(crate) const LEAST_MOVEMENT: Law = Law::at_least(1e-5, 1e3);
 

@@ -90,7 +90,7 @@ mechanism! {
 }
 
 #[test]
-fn what_nothing_answers_stays_where_it_is_and_is_named() {
+fn indifferent_coordinates_are_reported() {
     let free: Held = Held::default();
     let rest = equilibrium(&free, 0.0, &free.guess(&free.parameters())).unwrap();
     assert_eq!(rest.indifferent, [true, false, true, false], "the cart with its bob, sideways");

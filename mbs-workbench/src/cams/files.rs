@@ -5,7 +5,7 @@ use core::fmt::Write;
 
 use super::follower::{Cam, Place};
 use crate::output::svg::{COLOURS, label, open};
-use crate::tables::{Columns, Kind, Points, Spline, constant};
+use crate::tables::{Columns, Points, Spline, SplineKind, constant};
 
 /// Places of one turn at equal cam angles, from its beginning on.
 pub fn turn(cam: &Cam, count: usize) -> Vec<(f64, Place<f64>)> {
@@ -90,7 +90,8 @@ pub fn rust(name: &str, source: &str, places: &[(f64, Place<f64>)]) -> Result<St
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-    let spline = Spline::fit(&x, &y, Kind::PeriodicQuintic(TAU), None).map_err(|error| error.to_string())?;
+    let spline =
+        Spline::fit(&x, &y, SplineKind::PeriodicQuintic(TAU), None).map_err(|error| error.to_string())?;
     let columns = Columns::parse("rad, m")?;
     let names = ["polar angle", "radius of the pitch curve"].map(String::from);
     let lines = (1..=x.len()).collect();

@@ -10,7 +10,7 @@ use super::CamError;
 use super::follower::{Direction, Follower};
 use super::jet::{Jet, Plane};
 use crate::tables::knots::{Advice, Estimate};
-use crate::tables::{Kind, Spline};
+use crate::tables::{Spline, SplineKind};
 
 /// Points of a measured profile, about the cam's centre: polar angles (rad) and radii (m).
 #[derive(Clone, Debug, PartialEq)]
@@ -147,13 +147,13 @@ impl Profile {
 
     fn advice(&self, kept: &[usize]) -> Result<Option<Advice>, CamError> {
         let (x, y) = self.points(kept);
-        Advice::with(&x, &y, Kind::PeriodicQuintic(TAU), |count| among(&x, count)).map_err(failed)
+        Advice::with(&x, &y, SplineKind::PeriodicQuintic(TAU), |count| among(&x, count)).map_err(failed)
     }
 
     fn fit(&self, kept: &[usize], knots: usize) -> Result<Spline, CamError> {
         let (x, y) = self.points(kept);
         let places = among(&x, knots);
-        Spline::along(&x, &y, Kind::PeriodicQuintic(TAU), places).map_err(failed)
+        Spline::along(&x, &y, SplineKind::PeriodicQuintic(TAU), places).map_err(failed)
     }
 
     /// Takes outliers out of `kept`, and returns them.

@@ -1,8 +1,11 @@
 //! Cams: from a lift law to a profile in closed form, its limits, the least size, and from a measured profile back to the lift.
 //!
-//! [`lift`] makes laws with exact derivatives, [`follower`] the profile that moves a follower by them, [`limits`] what a profile may
-//! not exceed and the least cam that keeps to it, [`pitch`] the pitch curve as a function of a text, [`measured`] the lift that a measured profile makes. [`files`] writes profiles,
-//! [`page`] the page of `mbs cam`.
+//! - [`lift`]: laws with exact derivatives.
+//! - [`follower`]: the profile that moves a follower by a law.
+//! - [`limits`]: bounds of a profile, and the least cam that keeps to them.
+//! - [`pitch`]: the pitch curve as a function of a text.
+//! - [`measured`]: the lift that a measured profile makes.
+//! - [`files`]: files of profiles; [`page`]: the page of `mbs cam`.
 //!
 //! A cam turns about the origin. Its angle θ counts from the start of the law; lengths are in metres, angles in radians.
 

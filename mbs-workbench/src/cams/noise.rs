@@ -10,7 +10,7 @@ use core::f64::consts::TAU;
 use mbs_runtime::driver::{End, FitError};
 
 use super::lift::Lift;
-use crate::tables::{Kind, Spline};
+use crate::tables::{Spline, SplineKind};
 
 /// Points a turn.
 pub const POINTS: [usize; 5] = [90, 180, 360, 720, 1440];
@@ -23,7 +23,7 @@ const SEEDS: u64 = 8;
 
 /// Errors for one number of points (m or rad over rad²).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct NoiseRow {
     /// Points a turn.
     pub points: usize,
     /// Root mean square noise of the second derivative, of a cubic spline through all points.
@@ -43,7 +43,7 @@ pub struct Study {
     /// Largest magnitude of the law's acceleration.
     pub largest: f64,
     /// One row for each number of points.
-    pub rows: Vec<Row>,
+    pub rows: Vec<NoiseRow>,
 }
 
 /// Uniform numbers in [−0.5, 0.5) by SplitMix64. Source: Steele, Lea & Flood 2014.
@@ -79,7 +79,7 @@ pub fn through(width: f64, points: usize) -> Result<f64, FitError> {
     mean((1..=SEEDS).map(|seed| {
         let y: Vec<f64> = uniform(seed, points + 1).into_iter().map(|noise| width * noise).collect();
         // A fit is linear: what noise adds to the acceleration is the fit of the noise.
-        let spline = Spline::fit(&x, &y, Kind::Cubic([End::Natural; 2]), None)?;
+        let spline = Spline::fit(&x, &y, SplineKind::Cubic([End::Natural; 2]), None)?;
         Ok(x.iter().map(|x| spline.derivatives(*x)[2].powi(2)).sum::<f64>() / x.len() as f64)
     }))
 }
@@ -90,7 +90,7 @@ fn fitted(lift: &Lift, width: f64, points: usize, knots: usize) -> Result<f64, F
     mean((1..=SEEDS).map(|seed| {
         let noise = uniform(seed, points);
         let y: Vec<f64> = exact.iter().zip(noise).map(|(jet, noise)| jet[0] + width * noise).collect();
-        let spline = Spline::fit(&x, &y, Kind::PeriodicQuintic(TAU), Some(knots))?;
+        let spline = Spline::fit(&x, &y, SplineKind::PeriodicQuintic(TAU), Some(knots))?;
         let squares = x.iter().zip(&exact).map(|(x, jet)| (spline.derivatives(*x)[2] - jet[2]).powi(2));
         Ok(squares.sum::<f64>() / points as f64)
     }))
@@ -103,7 +103,7 @@ fn fitted(lift: &Lift, width: f64, points: usize, knots: usize) -> Result<f64, F
 pub fn study(lift: &Lift, width: f64) -> Result<Study, FitError> {
     let mut rows = Vec::new();
     for points in POINTS {
-        let mut row = Row {
+        let mut row = NoiseRow {
             points,
             through: through(width, points)?,
             expected: expected(width, points),

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::files::turn;
 use super::follower::{Cam, Follower};
 use super::limits::{Limits, Verdict};
-use super::noise::{KNOTS, Row, Study};
+use super::noise::{KNOTS, NoiseRow, Study};
 use crate::output::page::Template;
 
 /// Places of a curve.
@@ -52,7 +52,7 @@ pub fn data(
 
 /// Data of a study of noise in SI.
 pub fn noise(study: &Study) -> Value {
-    let column = |of: &dyn Fn(&Row) -> Option<f64>| study.rows.iter().map(of).collect::<Vec<_>>();
+    let column = |of: &dyn Fn(&NoiseRow) -> Option<f64>| study.rows.iter().map(of).collect::<Vec<_>>();
     let fitted = (0..KNOTS.len()).map(|k| column(&|row| row.fitted[k])).collect::<Vec<_>>();
     json!({
         "width": study.width, "largest": study.largest, "knots": KNOTS,

@@ -37,8 +37,8 @@ impl<const ORDER: usize> Pitch<ORDER> {
     /// The pitch curve of a cam with a pad.
     ///
     /// # Errors
-    /// [`CamError::Value`] for a flat face, a law with fewer continuous derivatives than `ORDER`, and a pitch curve that a direction
-    /// from the cam's centre meets twice.
+    /// [`CamError::Value`] for a flat face and for a law with fewer continuous derivatives than `ORDER`. Also for a pitch curve that
+    /// a direction from the cam's centre meets twice.
     pub fn new(cam: &Cam) -> Result<Self, CamError> {
         const { assert!(ORDER <= 3, "three derivatives are known") };
         let fault = |name, why: String| Err(CamError::Value(name, why));

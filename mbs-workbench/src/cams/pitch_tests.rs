@@ -1,4 +1,5 @@
-//! The lecture's opener as a text with a cam joint, on the pitch curve in closed form and on tables of it, against its lift law.
+//! The lecture's opener as a text with a cam joint, against its lift law. The pitch curve is taken in closed form and from
+//! tables of it.
 
 use core::f64::consts::TAU;
 

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use crate::target_directory::target_directory;
-use crate::teaching::basins::{Axis, Basins, Method, basins};
+use crate::teaching::basins::{Axis, BasinMethod, Basins, basins};
 use crate::teaching::basins_picture::{self, describe, heading};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -92,11 +92,11 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
 }
 
 /// Name of a method in the document.
-fn word(method: Method) -> &'static str {
+fn word(method: BasinMethod) -> &'static str {
     match method {
-        Method::Plain => "newton_raphson",
-        Method::Assemble => "assemble",
-        Method::Declared => "assemble_declared",
+        BasinMethod::Plain => "newton_raphson",
+        BasinMethod::Assemble => "assemble",
+        BasinMethod::Declared => "assemble_declared",
     }
 }
 

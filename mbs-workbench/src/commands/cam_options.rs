@@ -13,7 +13,7 @@ use crate::cams::follower::{Follower, Side};
 use crate::cams::lift::{FLANKS, Lift};
 use crate::cams::limits::{Limits, Load};
 use crate::mismatch::nearest;
-use crate::tables::{Columns, Kind, Spline, close_period, constant, read};
+use crate::tables::{Columns, Spline, SplineKind, close_period, constant, read};
 
 /// Kind of follower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -331,7 +331,7 @@ impl Arguments {
         }
         let period = core::f64::consts::TAU;
         close_period(&mut points, period).map_err(|fault| named(fault.to_string()))?;
-        let spline = Spline::fit(&points.x, &points.y, Kind::PeriodicQuintic(period), self.knots);
+        let spline = Spline::fit(&points.x, &points.y, SplineKind::PeriodicQuintic(period), self.knots);
         let spline = spline.map_err(|error| named(format!("{error}\nhelp: another number of `--knots`")))?;
         Ok((self.corrected(Lift::table(spline)?)?, bytes))
     }

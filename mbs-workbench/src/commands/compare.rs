@@ -7,7 +7,7 @@ use crate::card::Card;
 use crate::catalogue::KINDS;
 use crate::mismatch::Mismatch;
 use crate::output::origin::Origin;
-use crate::teaching::comparison::{Candidate, Fault, candidate, difference};
+use crate::teaching::comparison::{Candidate, ComparisonFault, candidate, difference};
 use crate::text_file::is_file;
 use clap::Args;
 use serde_json::json;
@@ -92,11 +92,11 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     Ok(())
 }
 
-fn explain(card: &Card, fault: Fault) -> CommandError {
+fn explain(card: &Card, fault: ComparisonFault) -> CommandError {
     match fault {
-        Fault::Mismatch(mismatch) => mismatch.into(),
-        Fault::Failure(failure) => CommandError::Failed(format!("{}: {failure}", card.name())),
-        Fault::Text(text) => CommandError::Failed(text),
+        ComparisonFault::Mismatch(mismatch) => mismatch.into(),
+        ComparisonFault::Failure(failure) => CommandError::Failed(format!("{}: {failure}", card.name())),
+        ComparisonFault::Text(text) => CommandError::Failed(text),
     }
 }
 

@@ -75,7 +75,7 @@ fn tolerance(within: f64) -> f64 {
 }
 
 /// The text that the command is about.
-struct Subject {
+struct StudiedText {
     name: String,
     file_name: String,
     title: String,
@@ -88,7 +88,7 @@ struct Subject {
     until: f64,
 }
 
-impl Subject {
+impl StudiedText {
     fn find(catalogue: &Catalogue, arguments: &Arguments) -> Result<Self, CommandError> {
         let name = &arguments.name;
         if is_file(name) { Self::of_file(name, arguments) } else { Self::of_card(catalogue, arguments) }
@@ -101,7 +101,7 @@ impl Subject {
         let value = |(index, entry): (usize, &mbs_runtime::Entry)| {
             Some((entry.name.to_string(), equations.get(index)?))
         };
-        Ok(Subject {
+        Ok(StudiedText {
             name: target.name().to_string(),
             file_name: target.file_name(),
             title: target.title().to_string(),
@@ -158,7 +158,7 @@ impl Subject {
         };
         // The last of several values of a name counts.
         values.reverse();
-        Ok(Subject {
+        Ok(StudiedText {
             name: name.to_string(),
             file_name: snake_case(&text.type_name()),
             title,
@@ -241,7 +241,7 @@ fn unknown(kind: &str, name: &str, known: &[&str]) -> CommandError {
 
 /// Compares scenes of a text, prints the table, writes page, picture and table.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
-    let subject = Subject::find(catalogue, arguments)?;
+    let subject = StudiedText::find(catalogue, arguments)?;
     if !subject.functions.is_empty() {
         return Err(CommandError::Usage(format!(
             "`{}` calls functions of its crate ({}), which scenes of a copy do not have; give the effect its law in the text",

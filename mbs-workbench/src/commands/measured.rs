@@ -174,7 +174,7 @@ pub fn compared(overlay: &Overlay, motion: &Motion) -> Option<[String; 2]> {
 }
 
 /// The points that a page shows: all, or evenly left out.
-pub fn thinned(overlays: &[Overlay]) -> Vec<Overlay> {
+pub fn decimate(overlays: &[Overlay]) -> Vec<Overlay> {
     let thin = |overlay: &Overlay| {
         let stride = overlay.time.len().div_ceil(SHOWN).max(1);
         let every = |values: &[f64]| values.iter().copied().step_by(stride).collect();
@@ -206,7 +206,7 @@ fn say_of_wraps(Named { name, path }: &Named, measured: &Measured) {
 fn read<T>(
     Named { name, path }: &Named,
     unit: &str,
-    then: impl FnOnce(&Measured) -> Result<T, crate::tables::Fault>,
+    then: impl FnOnce(&Measured) -> Result<T, crate::tables::ReadFault>,
 ) -> Result<T, CommandError> {
     let bytes =
         fs::read(path).map_err(|error| CommandError::Usage(format!("cannot read {path}: {error}")))?;

@@ -33,6 +33,7 @@ mod rows;
 pub mod run;
 mod run_files;
 pub mod structure;
+pub mod study;
 mod summary;
 pub mod table;
 mod target;

@@ -3,7 +3,7 @@
 use crate::catalogue::Catalogue;
 use std::io::Write;
 
-use crate::teaching::next_position::{Course, Trial, WAYS, Way};
+use crate::teaching::next_position::{ReferenceMotion, STEP_METHODS, StepAttempts, StepMethod};
 use clap::Args;
 use mbs_codegen::picture::Span;
 use serde_json::json;
@@ -31,7 +31,7 @@ pub struct Arguments {
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     let choice = arguments.chosen.choice(catalogue)?;
     let duration = choice.target.duration(choice.mechanism.as_ref())?;
-    let course = Course::new(choice.mechanism.as_ref(), duration, arguments.starts)
+    let course = ReferenceMotion::new(choice.mechanism.as_ref(), duration, arguments.starts)
         .map_err(|failure| choice.target.failed(choice.mechanism.as_ref(), &failure.to_string()))?;
     let steps: Vec<f64> = PARTS.map(|part| duration / f64::from(part)).to_vec();
     out.put_mechanism(&choice.target, choice.mechanism.as_ref());
@@ -51,14 +51,14 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         out,
         "ones (the stepper's: of the block that needs the most), right/wrong assembly/no position\n"
     )?;
-    let head: String = WAYS.iter().map(|way| format!("  {:>22}", name(*way))).collect();
+    let head: String = STEP_METHODS.iter().map(|way| format!("  {:>22}", name(*way))).collect();
     writeln!(out, "{:>24}{head}", "step")?;
     for h in &steps {
         let trials: String =
-            WAYS.iter().map(|way| format!("  {:>22}", cell(&course.trial(*way, *h)))).collect();
+            STEP_METHODS.iter().map(|way| format!("  {:>22}", cell(&course.trial(*way, *h)))).collect();
         writeln!(out, "{:>24}{trials}", step(&choice, duration, *h))?;
-        for way in WAYS {
-            let Trial { count, right, wrong, iterations } = course.trial(way, *h);
+        for way in STEP_METHODS {
+            let StepAttempts { count, right, wrong, iterations } = course.trial(way, *h);
             out.push(
                 "trials",
                 json!({
@@ -68,7 +68,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         }
     }
     writeln!(out, "\nlargest step up to which all are right")?;
-    for way in WAYS {
+    for way in STEP_METHODS {
         let safe = course.largest_safe_step(way, &steps);
         out.push("largest_steps", json!({ "way": name(way), "step": safe }));
         let more = if steps.last().is_some_and(|last| safe >= *last) { " or more" } else { "" };
@@ -77,15 +77,15 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     Ok(())
 }
 
-fn name(way: Way) -> &'static str {
+fn name(way: StepMethod) -> &'static str {
     match way {
-        Way::Previous => "previous",
-        Way::Predicted => "predicted",
-        Way::Stepper => "stepper",
+        StepMethod::Previous => "previous",
+        StepMethod::Predicted => "predicted",
+        StepMethod::Stepper => "stepper",
     }
 }
 
-fn cell(trial: &Trial) -> String {
+fn cell(trial: &StepAttempts) -> String {
     let mean = match trial.right {
         0 => "–".to_string(),
         right => format!("{:.1}", f64::from(trial.iterations) / right as f64),

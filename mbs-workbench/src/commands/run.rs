@@ -17,7 +17,7 @@ use super::analysis::{
 use super::assignment::{Assignment, assignment};
 use super::chosen::{require_named, svg_file, write_file};
 use super::document::Output;
-use super::measured::{Tables, compared, thinned};
+use super::measured::{Tables, compared, decimate};
 use super::report_files::{announce_size, require_writable, write_report};
 use super::run_files::{PageContent, animated, described, facts, modes, page, values};
 use super::target::Target;
@@ -326,7 +326,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         command: &arguments.command(),
         analysis: request.analysis_of(&target).word(),
         facts: &facts,
-        overlays: &thinned(&overlays),
+        overlays: &decimate(&overlays),
     };
     let page = page(&target, &instances, &done, &content);
     let origin = out.put_mechanism(&target, instances[0].1.equations());

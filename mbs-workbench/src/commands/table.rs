@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::output::origin::Origin;
 use crate::tables::knots::{Advice, Estimate};
 use crate::tables::{
-    Columns, Fault, Kind, Points, SEED, Spline, chart, close_period, constant, read, sample,
+    Columns, Points, ReadFault, SEED, Spline, SplineKind, chart, close_period, constant, read, sample,
 };
 use crate::target_directory::target_directory;
 use clap::Args;
@@ -77,11 +77,11 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     };
     let named = |message: String| CommandError::Failed(format!("{}: {message}", file.display()));
     let bytes = fs::read(file).map_err(|error| named(format!("cannot be read: {error}")))?;
-    let faulty = |fault: Fault| named(fault.to_string());
+    let faulty = |fault: ReadFault| named(fault.to_string());
     let mut points = read(&bytes, arguments.columns.as_ref()).map_err(faulty)?;
     let kind = kind(arguments, &points)?;
     let mut repeated = false;
-    if let Kind::PeriodicQuintic(period) = kind {
+    if let SplineKind::PeriodicQuintic(period) = kind {
         repeated = close_period(&mut points, period).map_err(faulty)?;
     }
     let fitted = Spline::fit(&points.x, &points.y, kind, arguments.knots).and_then(|spline| {
@@ -126,18 +126,18 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     Ok(())
 }
 
-fn kind(arguments: &Arguments, points: &Points) -> Result<Kind, CommandError> {
+fn kind(arguments: &Arguments, points: &Points) -> Result<SplineKind, CommandError> {
     let unit = &points.columns.x.1;
     match (arguments.period, arguments.periodic) {
-        (Some(period), _) => Ok(Kind::PeriodicQuintic(period * unit.factor)),
-        (None, true) => unit.turn().map(Kind::PeriodicQuintic).ok_or_else(|| {
+        (Some(period), _) => Ok(SplineKind::PeriodicQuintic(period * unit.factor)),
+        (None, true) => unit.turn().map(SplineKind::PeriodicQuintic).ok_or_else(|| {
             CommandError::Usage(format!(
                 "a turn is no period of a column in {}\nhelp: say `--period`, in {0}",
                 unit.name
             ))
         }),
         (None, false) => {
-            Ok(Kind::Cubic(arguments.slopes.map_or([End::Natural; 2], |slopes| slopes.map(End::Slope))))
+            Ok(SplineKind::Cubic(arguments.slopes.map_or([End::Natural; 2], |slopes| slopes.map(End::Slope))))
         }
     }
 }
@@ -188,7 +188,7 @@ fn advise(
 }
 
 /// Points, spline, residual and noise as data, in SI.
-fn describe_in(out: &mut Output, points: &Points, spline: &Spline, kind: Kind, gain: f64) {
+fn describe_in(out: &mut Output, points: &Points, spline: &Spline, kind: SplineKind, gain: f64) {
     let (largest, mean, place) = spline.residual(&points.x, &points.y);
     let columns = [&points.columns.x.1, &points.columns.y.1];
     let columns: Vec<_> = points.names.iter().zip(columns).collect();
@@ -196,7 +196,7 @@ fn describe_in(out: &mut Output, points: &Points, spline: &Spline, kind: Kind, g
     out.put("columns", columns.iter().map(column).collect::<Vec<_>>());
     out.put("points", points.x.len());
     out.put("knots", spline.knots.len());
-    out.put("spline", if matches!(kind, Kind::Cubic(_)) { "cubic" } else { "periodic quintic" });
+    out.put("spline", if matches!(kind, SplineKind::Cubic(_)) { "cubic" } else { "periodic quintic" });
     out.put("largest_residual", json!({ "value": largest, "line": points.lines[place] }));
     out.put("mean_residual", mean);
     out.put("noise_gain", gain);
@@ -207,7 +207,7 @@ fn write_summary(
     out: &mut dyn Write,
     points: &Points,
     spline: &Spline,
-    kind: Kind,
+    kind: SplineKind,
     repeated: bool,
 ) -> std::io::Result<()> {
     let (across, up) = (&points.columns.x.1, &points.columns.y.1);
@@ -222,8 +222,8 @@ fn write_summary(
         across.name
     )?;
     let (degree, smooth) = match kind {
-        Kind::Cubic(_) => ("cubic", 2),
-        Kind::PeriodicQuintic(_) => ("periodic quintic", 4),
+        SplineKind::Cubic(_) => ("cubic", 2),
+        SplineKind::PeriodicQuintic(_) => ("periodic quintic", 4),
     };
     writeln!(out, "spline    {degree}, {} knots, {smooth} continuous derivatives", spline.knots.len())?;
     let (largest, mean, place) = spline.residual(&points.x, &points.y);
@@ -239,7 +239,8 @@ fn explain(error: FitError, points: &Points) -> String {
     let column = &points.columns.x;
     let at = |point: usize| points.lines.get(point).copied().unwrap_or(0);
     let fault = |line: usize, cure: &str| {
-        Fault { line, column: column.0 + 1, message: error.to_string(), cure: cure.to_string() }.to_string()
+        ReadFault { line, column: column.0 + 1, message: error.to_string(), cure: cure.to_string() }
+            .to_string()
     };
     match error {
         FitError::TooFewPoints { given, .. } => fault(0, &format!("say `--knots {given}` at most")),

@@ -81,8 +81,8 @@ pub fn csv(valleys: &[Valley]) -> String {
     text
 }
 
-/// The error of the second derivative over the number of points for each rounding, a panel a function: through every point as a line, the
-/// best fit of fewer knots dashed, the lowest point of all as a ring.
+/// The error of the second derivative over the number of points for each rounding, one panel for each function. A line is the spline
+/// through every point, a dashed line the best fit of fewer knots, a ring the lowest point of all.
 pub fn picture(valleys: &[Valley]) -> String {
     let mut svg = open(WIDTH as usize, (PANEL * valleys.len() as f64) as usize);
     for (index, valley) in valleys.iter().enumerate() {

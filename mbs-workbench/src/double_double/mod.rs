@@ -1,7 +1,7 @@
 //! Numbers of twice the digits of `f64`: unevaluated sums of two of them, for reference solutions.
 //!
 //! Sources: Dekker 1971 for exact products and quotients, Knuth 1969 for exact sums, Joldes, Muller & Popescu 2017 for errors of the
-//! operations: at most 10 u² of a result, u = 2⁻⁵³. The functions are within 32 u² of the larger of result and 1
+//! operations. The errors are at most 10 u² of a result, u = 2⁻⁵³. The functions are within 32 u² of the larger of result and 1
 //! (`cargo test -p mbs-workbench --lib double_double`).
 
 use core::cmp::Ordering;

@@ -211,15 +211,15 @@ impl EffectsResult {
         data["command"] = json!(self.command);
         data["facts"] = json!(self.facts);
         let stride = self.study.times.len().div_ceil(DRAWN).max(1);
-        let thinned =
+        let decimate =
             |values: &[f64]| values.iter().step_by(stride).map(|value| *value as f32).collect::<Vec<f32>>();
-        data["times"] = json!(thinned(&self.study.times));
+        data["times"] = json!(decimate(&self.study.times));
         let enough = self.of(self.study.enough).and_then(|candidate| candidate.measured.as_ref());
         let curves = self.watched().into_iter().map(|curve| {
             let other = enough.and_then(|measured| measured.outputs.iter().find(|one| one.name == curve.name));
             json!({
-                "name": curve.name, "unit": curve.unit, "range": range(&curve.values), "whole": thinned(&curve.values),
-                "enough": other.map(|other| thinned(&other.values)),
+                "name": curve.name, "unit": curve.unit, "range": range(&curve.values), "whole": decimate(&curve.values),
+                "enough": other.map(|other| decimate(&other.values)),
             })
         });
         data["curves"] = json!(curves.collect::<Vec<_>>());

@@ -31,8 +31,8 @@ pub struct Blueprint {
     pub is_measured: bool,
 }
 
-/// Parts of a program of many texts: they keep all cores busy.
-const UNITS: u32 = 16;
+/// Parts of a program of many texts. Each has a copy of the inlined functions that it calls.
+const UNITS: u32 = 4;
 
 /// A study that is built in a program of its own: it has the mechanism in more numbers than `mbs` does.
 #[derive(Clone, Copy, Debug)]
@@ -180,8 +180,8 @@ impl Blueprint {
     /// constructor. It is built with what the library is at that time.
     ///
     /// # Errors
-    /// [`ForgeError::NoLibrary`] where neither the constructor nor the module of the card begins with a library that the card's crate
-    /// is or depends on by path.
+    /// [`ForgeError::NoLibrary`] where neither the constructor nor the module of the card begins with a known library. Known are the
+    /// card's crate and those that it depends on by path.
     pub fn of_card(
         forge: &Forge,
         card: &Card,

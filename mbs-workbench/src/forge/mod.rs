@@ -1,7 +1,7 @@
 //! The forge: programs for mechanisms that the running program does not have, built on demand.
 //!
-//! It writes a crate below `mbs/` in cargo's target directory, one folder for each content, and builds it with the lock file,
-//! the profiles and the target directory of its caller. So what both need is built once. No source tree is written to.
+//! It writes a crate below `mbs/` in cargo's target directory, one folder for each content. The build has the lock file, the
+//! profiles and the target directory of the caller. So what both need is built once. No source tree is written to.
 
 mod blueprint;
 mod build;

@@ -3,11 +3,11 @@
 use crate::erased::driven_variations::{DrivenVariants, LANES};
 use crate::erased::timed_steps::{Placed, TimedSteps};
 use crate::hard_cases::judge::{Bounds, exceeds, judge, less_turns, of_driven};
-use crate::hard_cases::list::description::Kind;
-use crate::hard_cases::oracle::{Oracle, State};
+use crate::hard_cases::list::description::MethodKind;
+use crate::hard_cases::oracle::{Oracle, OracleState};
 use crate::hard_cases::similar::{compared, in_other_size, in_size};
 use crate::hard_cases::study::{Clock, Extent};
-use crate::hard_cases::variation::{Class, Subject, Variation};
+use crate::hard_cases::variation::{Class, Variation, VariedParts};
 use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 use crate::setting::{Closing, Numbers};
 
@@ -27,7 +27,7 @@ pub type Make<'a> = &'a dyn Fn(&[(usize, f64)]) -> Option<Made>;
 /// Runs all variants of `extent`.
 pub fn driven_outcomes(
     make: Make,
-    subject: &Subject,
+    subject: &VariedParts,
     extent: &Extent,
     clock: &Clock,
     progress: &mut dyn FnMut(&str, f64),
@@ -61,7 +61,8 @@ pub fn driven_outcomes(
             let run = positions(runs.as_ref(), *closing, extent.until, steps);
             let method = if lanes == 1 { format!("Stepper, {closing}") } else { format!("Batch of {lanes}") };
             let failed = run.as_ref().err().and_then(|(_, time)| *time);
-            let states: Vec<State> = run.iter().flat_map(|(run, _)| run.iter().map(of_driven)).collect();
+            let states: Vec<OracleState> =
+                run.iter().flat_map(|(run, _)| run.iter().map(of_driven)).collect();
             let found = outcome(&variation, method, (run, &fine), &oracle, (subject, numbers, *closing));
             outcomes.push(match &extent.description {
                 Some(case) if case.refused.is_some() => case.refused(found, failed),
@@ -77,7 +78,7 @@ pub fn driven_outcomes(
 fn similar_outcomes(
     [own, other]: [&dyn DrivenVariants; 2],
     variation: &Variation,
-    subject: &Subject,
+    subject: &VariedParts,
     extent: &Extent,
 ) -> Vec<Outcome> {
     let mut shift = own.guess();
@@ -119,8 +120,8 @@ fn similar_outcomes(
     outcomes
 }
 
-fn kind(closing: Closing) -> Kind {
-    if closing == Closing::Closed { Kind::Drives } else { Kind::Bounded }
+fn kind(closing: Closing) -> MethodKind {
+    if closing == Closing::Closed { MethodKind::Drives } else { MethodKind::Bounded }
 }
 
 /// Positions with the number of evaluations, or the reason why there are none, with its time (s).
@@ -138,7 +139,7 @@ fn outcome(
     method: String,
     (run, fine): (Positions, &Positions),
     oracle: &Oracle,
-    (subject, numbers, closing): (&Subject, Numbers, Closing),
+    (subject, numbers, closing): (&VariedParts, Numbers, Closing),
 ) -> Outcome {
     let mut outcome = Outcome::blank(variation, method);
     let (run, work) = match run {
@@ -162,7 +163,7 @@ fn outcome(
     let digit = numbers.epsilon() * largest;
     let bounds =
         Bounds { rows: open, balance: open, estimate: bound, rounding: bound, digit, is_shown: true };
-    let states: Vec<State> = run.iter().map(of_driven).collect();
+    let states: Vec<OracleState> = run.iter().map(of_driven).collect();
     let judgement = judge([&states, &[]], oracle, scales, bounds, variation.seed);
     outcome.not_made = judgement.not_made;
     let branch = states.iter().find_map(|state| {

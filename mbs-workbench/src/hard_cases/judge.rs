@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use crate::erased::timed_runs::Seen;
 use crate::erased::timed_steps::Placed;
-use crate::hard_cases::oracle::{Gap, Oracle, State};
+use crate::hard_cases::oracle::{Gap, Oracle, OracleState};
 use crate::hard_cases::variation::Random;
 use crate::hard_cases::verdict::larger;
 
@@ -69,21 +69,21 @@ pub fn exceeds(value: f64, bound: f64) -> bool {
 }
 
 /// A state that is judged.
-pub fn of_moved(seen: &Seen) -> State {
+pub fn of_moved(seen: &Seen) -> OracleState {
     let Seen { t, q, qd, qdd, lambda, states, .. } = seen.clone();
-    State { t, q, qd, qdd, lambda, states }
+    OracleState { t, q, qd, qdd, lambda, states }
 }
 
 /// A state that is judged, of a motion that drives prescribe.
-pub fn of_driven(placed: &Placed<f64>) -> State {
+pub fn of_driven(placed: &Placed<f64>) -> OracleState {
     let [q, qd, qdd] = placed.motion.clone();
-    State { t: placed.t, q, qd, qdd, ..State::default() }
+    OracleState { t: placed.t, q, qd, qdd, ..OracleState::default() }
 }
 
 /// Judges a run at equal distances of time, by the text as `oracle` reads it. `fine`: the run of half the step at the same
 /// instants, empty where there is none; `scales`: reference metric of the coordinates.
 pub fn judge(
-    [run, fine]: [&[State]; 2],
+    [run, fine]: [&[OracleState]; 2],
     oracle: &Oracle,
     scales: &[f64],
     bounds: Bounds,
@@ -115,13 +115,13 @@ pub fn judge(
 }
 
 /// Instants at equal distances, the first and the last among them.
-fn looks(run: &[State]) -> impl Iterator<Item = &State> {
+fn looks(run: &[OracleState]) -> impl Iterator<Item = &OracleState> {
     let stride = run.len().saturating_sub(1).div_ceil(LOOKS - 1).max(1);
     run.iter().step_by(stride)
 }
 
 /// Φ, Φ̇ and Φ̈ are 0.
-fn rows(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, found: &mut Judgement) {
+fn rows(run: &[OracleState], oracle: &Oracle, scales: &[f64], bounds: Bounds, found: &mut Judgement) {
     let mut gradients = vec![0.0_f64; oracle.row_count()];
     // A gradient may vanish at a singular position; it is measured where it is largest.
     for state in run.iter().step_by((run.len() / 3).max(1)) {
@@ -166,7 +166,7 @@ pub fn less_turns(angle: f64) -> f64 {
 /// two; what truncation explains falls 32 times between them. Errors of q̇ and q̈ are those that half the step shows: beside stiff
 /// springs small errors of q are large ones of q̈.
 fn velocities(
-    [run, fine]: [&[State]; 2],
+    [run, fine]: [&[OracleState]; 2],
     turns: &[bool],
     scales: &[f64],
     bounds: Bounds,
@@ -181,7 +181,7 @@ fn velocities(
         // A run at half the step that is NaN explains nothing.
         if sum.is_finite() { sum } else { 0.0 }
     };
-    let miss = |a: &State, b: &State| {
+    let miss = |a: &OracleState, b: &OracleState| {
         let h = b.t - a.t;
         let miss = |j: usize| {
             let mean = 0.5 * (a.qd[j] + b.qd[j]) + h / 12.0 * (a.qdd[j] - b.qdd[j]);
@@ -220,14 +220,14 @@ fn velocities(
 }
 
 /// Largest differences of q̇ and q̈ of two runs at an instant, in the reference metric.
-fn doubts(run: &State, fine: &State, scales: &[f64]) -> [f64; 2] {
+fn doubts(run: &OracleState, fine: &OracleState, scales: &[f64]) -> [f64; 2] {
     [(&run.qd, &fine.qd), (&run.qdd, &fine.qdd)]
         .map(|(a, b)| extent(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>(), scales))
 }
 
 /// wᵀ(M q̈ + Φ_qᵀ λ − Q) is 0 along two directions that the seed gives, less what rounding of positions and velocities makes of it.
 fn balance(
-    run: &[State],
+    run: &[OracleState],
     oracle: &Oracle,
     scales: &[f64],
     bounds: Bounds,
@@ -262,13 +262,13 @@ fn balance(
 }
 
 /// Energies (J) and their rates (W) at the instants of a run.
-fn energies(run: &[State], oracle: &Oracle) -> Result<Vec<(f64, [f64; 2])>, Gap> {
+fn energies(run: &[OracleState], oracle: &Oracle) -> Result<Vec<(f64, [f64; 2])>, Gap> {
     run.iter().map(|state| Ok((state.t, oracle.energy(state)?))).collect()
 }
 
 /// The energy changes by the work of q̇ and q̈: Simpson's rule over four intervals, and over twice as long ones. Errors of the powers
 /// are those that half the step shows.
-fn energy([run, fine]: [&[State]; 2], oracle: &Oracle, bounds: Bounds, found: &mut Judgement) {
+fn energy([run, fine]: [&[OracleState]; 2], oracle: &Oracle, bounds: Bounds, found: &mut Judgement) {
     let (all, fine) = match energies(run, oracle).and_then(|all| Ok((all, energies(fine, oracle)?))) {
         Ok(both) => both,
         Err(gap) => return found.gap("energy", gap),
@@ -308,9 +308,9 @@ fn energy([run, fine]: [&[State]; 2], oracle: &Oracle, bounds: Bounds, found: &m
 
 impl Bounds {
     /// Largest kinetic energy (J): velocities alone have it.
-    fn size_of_energy(self, run: &[State], oracle: &Oracle) -> f64 {
-        let kinetic = |state: &State| {
-            let still = State { qd: vec![0.0; state.qd.len()], ..state.clone() };
+    fn size_of_energy(self, run: &[OracleState], oracle: &Oracle) -> f64 {
+        let kinetic = |state: &OracleState| {
+            let still = OracleState { qd: vec![0.0; state.qd.len()], ..state.clone() };
             let difference = oracle.energy(state).ok()?[0] - oracle.energy(&still).ok()?[0];
             Some(difference.abs())
         };

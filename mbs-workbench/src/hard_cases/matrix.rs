@@ -2,7 +2,7 @@
 
 use core::fmt::Write;
 
-use crate::hard_cases::result::Picture;
+use crate::hard_cases::result::{Picture, Shown};
 use crate::hard_cases::verdict::Verdict;
 use crate::output::page::escaped;
 
@@ -62,16 +62,26 @@ pub fn svg(picture: &Picture<'_>, sentence: &str) -> String {
         );
         for (column, cell) in picture.cells[row].iter().enumerate() {
             let x = names + COLUMN * column;
-            let Some((verdict, is_expected)) = cell else { continue };
-            let (colour, mark) = look(*verdict, *is_expected);
+            let Some(Shown { worst, is_expected, counts: [count, all] }) = cell else { continue };
+            let (colour, mark) = look(*worst, *is_expected);
+            let is_part = count < all;
+            let mark = if is_part { format!("{count}/{all}") } else { mark.to_string() };
+            // All variants as its width, those with the worst verdict on the right.
+            let wide = COLUMN - 2;
+            let part = if is_part { (wide * count).div_ceil((*all).max(1)) } else { wide };
+            let parts = [(look(Verdict::Right, true).0, 0, wide), (colour, wide - part, part)];
+            for (colour, left, width) in parts.into_iter().skip(usize::from(!is_part)) {
+                let _ = writeln!(
+                    text,
+                    "<rect x=\"{}\" y=\"{}\" width=\"{width}\" height=\"{}\" rx=\"3\" fill=\"{colour}\"/>",
+                    x + 1 + left,
+                    y + 1,
+                    ROW - 2
+                );
+            }
             let _ = writeln!(
                 text,
-                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"3\" fill=\"{colour}\"/>\
-                 <text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#fff\" font-weight=\"700\">{mark}</text>",
-                x + 1,
-                y + 1,
-                COLUMN - 2,
-                ROW - 2,
+                "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#fff\" font-weight=\"700\">{mark}</text>",
                 x + COLUMN / 2,
                 y + 14
             );
@@ -81,7 +91,7 @@ pub fn svg(picture: &Picture<'_>, sentence: &str) -> String {
     let legend = [
         (Verdict::Right, true, "right"),
         (Verdict::Late, true, "late"),
-        (Verdict::Refused, true, "refused, as foreseen"),
+        (Verdict::Refused, true, "refused, as foreseen; 2/8: two of eight variants"),
         (Verdict::Refused, false, "refused"),
         (Verdict::Wrong, true, "wrong"),
     ];
@@ -97,7 +107,7 @@ pub fn svg(picture: &Picture<'_>, sentence: &str) -> String {
             x + 10,
             x + 26
         );
-        x += 44 + 7 * name.len();
+        x += 44 + 6 * name.len();
     }
     let _ = writeln!(text, "<text x=\"12\" y=\"{}\" fill=\"#66707f\">{}</text>", y + 24, escaped(sentence));
     text + "</svg>\n"

@@ -3,12 +3,12 @@
 use crate::erased::timed_runs::{Effort, Seen};
 use crate::erased::variations::{Change, MovedVariants};
 use crate::hard_cases::judge::{Bounds, exceeds, judge, of_moved};
-use crate::hard_cases::list::description::Kind;
+use crate::hard_cases::list::description::MethodKind;
 use crate::hard_cases::oracle::Oracle;
 use crate::hard_cases::references::{FIRST, PARTS, References, Run, Varied, apart, instants, references};
 use crate::hard_cases::similar::{compared, in_other_size, in_size, positions};
 use crate::hard_cases::study::{Clock, Extent};
-use crate::hard_cases::variation::{Class, Subject, Variation};
+use crate::hard_cases::variation::{Class, Variation, VariedParts};
 use crate::hard_cases::verdict::{Outcome, Verdict};
 use crate::setting::{FormulationName, MotionMethod, Numbers, Resolution};
 
@@ -54,7 +54,7 @@ pub type Make<'a> = &'a dyn Fn(&[(usize, f64)]) -> Option<(Box<dyn MovedVariants
 /// The mechanism does not move as the text has it.
 pub fn moved_outcomes(
     make: Make,
-    subject: &Subject,
+    subject: &VariedParts,
     extent: &Extent,
     clock: &Clock,
     progress: &mut dyn FnMut(&str, f64),
@@ -106,7 +106,9 @@ pub fn moved_outcomes(
         .methods
         .iter()
         .copied()
-        .filter(|method| plain.mechanism.admits(*method, Numbers::Double) && extent.has(Kind::of(*method)))
+        .filter(|method| {
+            plain.mechanism.admits(*method, Numbers::Double) && extent.has(MethodKind::of(*method))
+        })
         .collect();
     // Of a small motion as many digits are claimed by the coarsest variant.
     let fine = FINE.min(CLAIMED * motion(&usual.first, scales) / COARSEST);
@@ -318,7 +320,7 @@ fn outcome(
     };
     let outcome = Outcome { verdict, reason, ..outcome };
     match &extent.description {
-        Some(case) => case.judged(outcome, Kind::of(method), variation, (&states, &varied.oracle)),
+        Some(case) => case.judged(outcome, MethodKind::of(method), variation, (&states, &varied.oracle)),
         None => outcome,
     }
 }
@@ -339,7 +341,7 @@ fn similar_outcome(
     [own, other]: [&Varied<'_>; 2],
     variation: &Variation,
     (method, base): (MotionMethod, &Result<[Resolution; 2], String>),
-    (subject, extent): (&Subject, &Extent),
+    (subject, extent): (&VariedParts, &Extent),
 ) -> Outcome {
     let refused = Outcome::blank(variation, method.to_string());
     let base = match base {
@@ -364,7 +366,7 @@ fn similar_outcome(
 /// Variants of a motion that there is none of.
 fn refused_outcomes(
     varied: &dyn Fn(Option<&Variation>) -> Result<Varied<'static>, String>,
-    subject: &Subject,
+    subject: &VariedParts,
     extent: &Extent,
 ) -> Vec<Outcome> {
     let Some(case) = &extent.description else { return Vec::new() };

@@ -107,14 +107,24 @@ pub fn in_order<'a>(values: impl Iterator<Item = &'a str>) -> Vec<String> {
     known
 }
 
+/// A place of the matrix as a picture shows it.
+pub struct Shown {
+    /// Worst verdict.
+    pub worst: Verdict,
+    /// `true` where as many refusals were foreseen.
+    pub is_expected: bool,
+    /// Variants with the worst verdict, and all.
+    pub counts: [usize; 2],
+}
+
 /// A matrix as a picture shows it.
 pub struct Picture<'a> {
     /// Names of the rows.
     pub rows: &'a [String],
     /// Names of the columns.
     pub columns: &'a [String],
-    /// Worst verdict of each place, row by row, with `true` where as many refusals were foreseen.
-    pub cells: Vec<Vec<Option<(Verdict, bool)>>>,
+    /// Places, row by row.
+    pub cells: Vec<Vec<Option<Shown>>>,
 }
 
 impl MatrixResult {
@@ -199,13 +209,14 @@ impl MatrixResult {
         self.cells.iter().find(|cell| cell.place == [row, column])
     }
 
-    /// Names of rows and columns, and the worst verdict of each place with `true` where it was foreseen.
+    /// Names of rows and columns, and the worst verdict of each place.
     pub fn picture(&self) -> Picture<'_> {
         let [rows, columns] = &self.axes;
         let worst = |row: &String, column: &String| {
             let cell = self.cell(row, column)?;
-            let (worst, _) = cell.worst(&self.outcomes);
-            Some((worst, cell.too_many(&self.outcomes).is_none()))
+            let (worst, count) = cell.worst(&self.outcomes);
+            let is_expected = cell.too_many(&self.outcomes).is_none();
+            Some(Shown { worst, is_expected, counts: [count, cell.outcomes.len()] })
         };
         let cells = rows.iter().map(|row| columns.iter().map(|column| worst(row, column)).collect());
         Picture { rows, columns, cells: cells.collect() }

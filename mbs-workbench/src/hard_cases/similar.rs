@@ -2,28 +2,28 @@
 
 use crate::erased::timed_runs::Seen;
 use crate::hard_cases::judge::exceeds;
-use crate::hard_cases::variation::{Subject, Variation};
+use crate::hard_cases::variation::{Variation, VariedParts};
 use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 
 /// Largest difference of a similar run, in the reference metric of the mechanism itself.
 const SAME: f64 = 1e-10;
 
 /// Coordinates of a similar mechanism in the size of the mechanism itself.
-pub fn in_size(values: &mut [f64], variation: &Variation, subject: &Subject) {
+pub fn in_size(values: &mut [f64], variation: &Variation, subject: &VariedParts) {
     for (value, dimension) in values.iter_mut().zip(&subject.dimensions) {
         *value /= variation.similarity.factor(*dimension);
     }
 }
 
 /// Positions and velocities in the size of the similar mechanism.
-pub fn in_other_size(values: &mut [f64], variation: &Variation, subject: &Subject) {
+pub fn in_other_size(values: &mut [f64], variation: &Variation, subject: &VariedParts) {
     for (value, dimension) in values.iter_mut().zip(&subject.dimensions) {
         *value *= variation.similarity.factor(*dimension);
     }
 }
 
-/// `outcome` with the verdict of the comparison: positions of both runs at the same instants, in the size of the mechanism itself,
-/// and the work of both.
+/// `outcome` with the verdict of the comparison of two runs. Compared are positions at the same instants, in the size of the
+/// mechanism itself, and the numbers of evaluations.
 pub fn compared(
     outcome: Outcome,
     (other, own): (&[Vec<f64>], &[Vec<f64>]),

@@ -2,7 +2,7 @@
 //!
 //! Powers of two round nothing, so that a solver without a length of its own does the same steps, bit by bit.
 
-use crate::hard_cases::oracle::{Oracle, State};
+use crate::hard_cases::oracle::{Oracle, OracleState};
 
 /// Exponents of length and mass in a unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,20 +55,20 @@ impl Similarity {
         2.0_f64.powi(self.power * (dimension.length + 3 * dimension.mass))
     }
 
-    /// `true` where the rows of `other` are those of `own` times powers of two, and so are their sums of forces: no number with a unit
-    /// stands between them. The parameters of `other` are those of `own` times their factors.
+    /// `true` where the rows and the sums of forces of `other` are those of `own` times powers of two. Then no number with a unit is
+    /// hidden in the text. The parameters of `other` are those of `own` times their factors.
     pub fn holds(self, own: &Oracle, other: &Oracle, coordinates: &[Dimension]) -> bool {
         let part = |first: f64| (0..coordinates.len()).map(|j| first + 0.13 * j as f64).collect::<Vec<f64>>();
         let sized = |values: Vec<f64>| {
             let pairs = values.into_iter().zip(coordinates);
             pairs.map(|(value, dimension)| value * self.factor(*dimension)).collect::<Vec<f64>>()
         };
-        let state = |of: &dyn Fn(Vec<f64>) -> Vec<f64>| State {
+        let state = |of: &dyn Fn(Vec<f64>) -> Vec<f64>| OracleState {
             q: of(part(0.4)),
             qd: of(part(0.7)),
             qdd: of(part(-0.3)),
             lambda: vec![0.0; own.row_count()],
-            ..State::default()
+            ..OracleState::default()
         };
         let (state, other_state) = (state(&|values| values), state(&sized));
         let is_power = |a: f64, b: f64| {

@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 use crate::erased::facade::AnyEquations;
 use crate::erased::variations::{MovedVariants, Variable};
 use crate::hard_cases::driven::driven_outcomes;
-use crate::hard_cases::list::description::{Description, Kind};
+use crate::hard_cases::list::description::{Description, MethodKind};
 use crate::hard_cases::list::sampled::Encoder;
 use crate::hard_cases::moved::moved_outcomes;
 use crate::hard_cases::oracle::{Gap, Oracle};
 use crate::hard_cases::similarity::{Dimension, Similarity};
-use crate::hard_cases::variation::{Class, Subject};
+use crate::hard_cases::variation::{Class, VariedParts};
 use crate::hard_cases::verdict::Outcome;
 use crate::setting::MotionMethod;
 
@@ -29,7 +29,7 @@ pub struct Extent {
 
 impl Extent {
     /// `true` where a kind of method is run.
-    pub fn has(&self, kind: Kind) -> bool {
+    pub fn has(&self, kind: MethodKind) -> bool {
         self.description.as_ref().is_none_or(|case| case.refused.is_some() || case.bounds.contains_key(&kind))
     }
 
@@ -121,7 +121,7 @@ impl Own<'_> {
     }
 
     /// Parts of it that can be varied, and the kinds of variants that do not suit it.
-    fn subject(&self, moved: Option<&dyn MovedVariants>) -> Result<(Subject, Vec<String>), String> {
+    fn subject(&self, moved: Option<&dyn MovedVariants>) -> Result<(VariedParts, Vec<String>), String> {
         let equations = self.equations;
         let declared = mbs_codegen::variables(equations.source(), Some(equations.scene()))?;
         let index = |name: &str| equations.variables().iter().position(|entry| entry.name == name);
@@ -167,7 +167,7 @@ impl Own<'_> {
             }
         }
         let scales = equations.coordinate_scales();
-        Ok((Subject { classes, ranges, scales, shaken, points, sized, dimensions, kinds }, left_out))
+        Ok((VariedParts { classes, ranges, scales, shaken, points, sized, dimensions, kinds }, left_out))
     }
 
     /// Index, value and dimension of each parameter, and the dimensions of the coordinates; none where a unit is not known.

@@ -5,7 +5,7 @@ use crate::erased::facade::AnyEquations;
 use crate::erased::variations::Variable;
 use crate::hard_cases::judge::{Bounds, judge};
 use crate::hard_cases::list::description::Description;
-use crate::hard_cases::oracle::{Oracle, State};
+use crate::hard_cases::oracle::{Oracle, OracleState};
 use crate::hard_cases::result::MatrixResult;
 use crate::hard_cases::study::{Clock, Extent, Own, study};
 use crate::hard_cases::variation::Class;
@@ -232,21 +232,22 @@ fn half_the_step_excuses_a_noise_of_accelerations_and_no_wrong_velocity() {
         digit: 0.0,
         is_shown: true,
     };
-    let run = |factor: f64, noise: f64| -> Vec<State> {
+    let run = |factor: f64, noise: f64| -> Vec<OracleState> {
         let at = |index: u32| {
             let t = f64::from(index) / 64.0;
             let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
-            State {
+            OracleState {
                 t,
                 q: vec![t.sin()],
                 qd: vec![factor * t.cos()],
                 qdd: vec![-t.sin() + sign * noise],
-                ..State::default()
+                ..OracleState::default()
             }
         };
         (0..=64).map(at).collect()
     };
-    let wrong = |run: &[State], fine: &[State]| judge([run, fine], &oracle, &[1.0], bounds, 1).wrong;
+    let wrong =
+        |run: &[OracleState], fine: &[OracleState]| judge([run, fine], &oracle, &[1.0], bounds, 1).wrong;
     let [right, noisy, fast] = [run(1.0, 0.0), run(1.0, 1e-3), run(1.001, 0.0)];
     assert_eq!(wrong(&right, &right), None);
     assert!(wrong(&noisy, &[]).is_some(), "nothing says that it is noise");

@@ -56,7 +56,7 @@ impl Class {
 
 /// Parts of a mechanism that can be varied.
 #[derive(Clone, Debug, Default)]
-pub struct Subject {
+pub struct VariedParts {
     /// Kinds of variants that suit it; never empty.
     pub classes: Vec<Class>,
     /// Index, lower and upper end of each parameter with a range.
@@ -134,7 +134,7 @@ impl Random {
 
 impl Variation {
     /// The variant of a seed.
-    pub fn of(seed: u64, subject: &Subject) -> Self {
+    pub fn of(seed: u64, subject: &VariedParts) -> Self {
         let class = subject.classes[(seed % subject.classes.len() as u64) as usize];
         let random = &mut Random::of(seed);
         let mut variation = Variation {
@@ -189,7 +189,7 @@ impl Variation {
         variation
     }
 
-    fn frame(&mut self, subject: &Subject, random: &mut Random) {
+    fn frame(&mut self, subject: &VariedParts, random: &mut Random) {
         let count = subject.scales.len();
         let unit = |i: usize| (0..count).map(|j| f64::from(u8::from(i == j))).collect();
         self.change.map = (0..count).map(unit).collect();
@@ -227,8 +227,8 @@ fn rows(kinds: &[u64], random: &mut Random) -> Vec<(usize, f64)> {
 mod tests {
     use super::*;
 
-    fn subject() -> Subject {
-        Subject {
+    fn subject() -> VariedParts {
+        VariedParts {
             classes: Class::ALL.to_vec(),
             ranges: vec![(3, 0.1, 0.2)],
             scales: vec![1.0, 0.5, 0.5],

@@ -2,7 +2,7 @@
 
 use mbs_codegen::vocabulary::drawn;
 
-use super::pieces::{Kind, Piece};
+use super::pieces::{Piece, PieceKind};
 
 /// Words besides those of pictures that a value or a bracket may follow, as `rate [0, 1]`; they may be names as well, as in `rate[0]`.
 const BEFORE_VALUES: [&str; 7] = ["at", "rate", "in", "tolerance", "right", "up", "span"];
@@ -20,9 +20,9 @@ pub fn is_sign(pieces: &[Piece<'_>], index: usize) -> bool {
     }
     let Some(before) = pieces[..index].iter().rev().find(|before| !before.is_comment()) else { return true };
     match before.kind {
-        Kind::Mark | Kind::Open => true,
+        PieceKind::Mark | PieceKind::Open => true,
         // `rate -omega` and `rate - omega` are told apart by the author's blanks alone.
-        Kind::Word if takes_value(before.text) => {
+        PieceKind::Word if takes_value(before.text) => {
             piece.is_apart && pieces.get(index + 1).is_some_and(|next| !next.is_apart)
         }
         _ => false,
@@ -55,16 +55,16 @@ pub fn is_apart(pieces: &[Piece<'_>], index: usize) -> bool {
         // `1. ..` would be read anew.
         (number, ".." | "..=") => number.ends_with('.'),
         // `m.0 .1` has two indices, `m.0.1` an index and a number.
-        _ if next.is(".") && before.kind == Kind::Literal => next.is_apart,
+        _ if next.is(".") && before.kind == PieceKind::Literal => next.is_apart,
         _ if before.is(".") || next.is(".") || before.is("..") || before.is("..=") => false,
         _ if before.is("#") => false,
         _ if is_sign(pieces, index - 1) => false,
         _ if ["*", "/", "^"].iter().any(|mark| before.is(mark) || next.is(mark)) => false,
         _ if is_operator(before) || is_operator(next) => true,
-        _ if before.kind == Kind::Mark || next.kind == Kind::Mark => next.is_apart,
-        _ if next.kind == Kind::Open => match before.kind {
-            Kind::Word => takes_value(before.text) && next.is_apart,
-            Kind::Literal => true,
+        _ if before.kind == PieceKind::Mark || next.kind == PieceKind::Mark => next.is_apart,
+        _ if next.kind == PieceKind::Open => match before.kind {
+            PieceKind::Word => takes_value(before.text) && next.is_apart,
+            PieceKind::Literal => true,
             _ => false,
         },
         _ => true,

@@ -2,7 +2,7 @@
 
 use super::LEVEL;
 use super::blanks::{is_apart, is_operator, is_sign};
-use super::pieces::{Kind, Piece};
+use super::pieces::{Piece, PieceKind};
 
 /// Characters of a line that is not broken, comments left out.
 pub const WIDTH: usize = 120;
@@ -26,8 +26,8 @@ pub fn laid_out(pieces: &[Piece<'_>], margin: usize) -> String {
             }
             text += pieces[index].text;
             match pieces[index].kind {
-                Kind::Open => open.push(indent),
-                Kind::Close => drop(open.pop()),
+                PieceKind::Open => open.push(indent),
+                PieceKind::Close => drop(open.pop()),
                 _ => {}
             }
         }
@@ -53,13 +53,13 @@ impl<'a> Statement<'a> {
         let mut within = vec![None; pieces.len()];
         let mut open: Vec<usize> = Vec::new();
         for (index, piece) in pieces.iter().enumerate() {
-            if piece.kind == Kind::Close
+            if piece.kind == PieceKind::Close
                 && let Some(start) = open.pop()
             {
                 (partner[start], partner[index]) = (index, start);
             }
             within[index] = open.last().copied();
-            if piece.kind == Kind::Open {
+            if piece.kind == PieceKind::Open {
                 open.push(index);
             }
         }
@@ -76,10 +76,10 @@ impl<'a> Statement<'a> {
     /// `true` where a comment makes a line begin with the piece.
     fn is_forced(&self, index: usize) -> bool {
         let (before, piece) = (&self.pieces[index - 1], &self.pieces[index]);
-        matches!(before.kind, Kind::LineComment | Kind::Doc)
-            || piece.kind == Kind::Doc
+        matches!(before.kind, PieceKind::LineComment | PieceKind::Doc)
+            || piece.kind == PieceKind::Doc
             || (piece.is_comment() && piece.line_ends > 0)
-            || (before.kind == Kind::BlockComment && piece.line_ends > 0)
+            || (before.kind == PieceKind::BlockComment && piece.line_ends > 0)
     }
 
     /// `true` where a line may begin with the piece.
@@ -88,9 +88,9 @@ impl<'a> Statement<'a> {
         let is_between = |at: usize| is_operator(&self.pieces[at]) && !is_sign(self.pieces, at);
         let has_begun = || {
             let open = self.partner[index] + 1;
-            piece.kind == Kind::Close && self.begins.get(open).is_some_and(|begins| *begins)
+            piece.kind == PieceKind::Close && self.begins.get(open).is_some_and(|begins| *begins)
         };
-        (piece.kind != Kind::Close && (before.kind == Kind::Open || before.is(",")))
+        (piece.kind != PieceKind::Close && (before.kind == PieceKind::Open || before.is(",")))
             || has_begun()
             || (is_between(index) && piece.text != "=")
             || is_between(index - 1)
@@ -139,11 +139,12 @@ impl<'a> Statement<'a> {
             return margin;
         }
         let Some(bracket) = open.last() else { return margin + LEVEL };
-        if self.pieces[from].kind == Kind::Close {
+        if self.pieces[from].kind == PieceKind::Close {
             return *bracket;
         }
         let before = self.pieces[..from].iter().rposition(|piece| !piece.is_comment());
-        let is_next = before.is_none_or(|at| self.pieces[at].kind == Kind::Open || self.pieces[at].is(","));
+        let is_next =
+            before.is_none_or(|at| self.pieces[at].kind == PieceKind::Open || self.pieces[at].is(","));
         bracket + if is_next || self.pieces[from].is_comment() { LEVEL } else { 2 * LEVEL }
     }
 
@@ -153,7 +154,7 @@ impl<'a> Statement<'a> {
         let mut best: Option<((bool, isize, u8), Vec<usize>)> = None;
         for index in from..end {
             let piece = &self.pieces[index];
-            if piece.kind == Kind::Close {
+            if piece.kind == PieceKind::Close {
                 depth -= 1;
             }
             if let Some((at, rank)) = self.place(index, from, end) {
@@ -164,7 +165,7 @@ impl<'a> Statement<'a> {
                     _ => best = Some((key, vec![at])),
                 }
             }
-            if piece.kind == Kind::Open {
+            if piece.kind == PieceKind::Open {
                 depth += 1;
             }
         }
@@ -187,7 +188,7 @@ impl<'a> Statement<'a> {
         let piece = &self.pieces[index];
         let is_one_of = |marks: &[&str]| marks.iter().any(|mark| piece.is(mark));
         let is_inside = |at: usize| (at > from && at < end).then_some(at);
-        if piece.kind == Kind::Open {
+        if piece.kind == PieceKind::Open {
             let close = self.partner[index];
             let has = |mark: &str| {
                 (index + 1..close).any(|at| self.within[at] == Some(index) && self.pieces[at].is(mark))

@@ -7,7 +7,7 @@ use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 /// Kinds of pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum PieceKind {
     /// Name or word.
     Word,
     /// Number or quoted text.
@@ -29,7 +29,7 @@ pub enum Kind {
 /// A token or a comment.
 #[derive(Clone, Copy, Debug)]
 pub struct Piece<'a> {
-    pub kind: Kind,
+    pub kind: PieceKind,
     /// The piece as it is written.
     pub text: &'a str,
     /// Line ends before it, behind the previous piece.
@@ -41,7 +41,7 @@ pub struct Piece<'a> {
 impl Piece<'_> {
     /// `true` for a comment that is no token, and for a doc comment.
     pub fn is_comment(&self) -> bool {
-        matches!(self.kind, Kind::Doc | Kind::LineComment | Kind::BlockComment)
+        matches!(self.kind, PieceKind::Doc | PieceKind::LineComment | PieceKind::BlockComment)
     }
 
     /// `true` where both are the same token or comment.
@@ -50,7 +50,8 @@ impl Piece<'_> {
     }
 
     pub fn is(&self, text: &str) -> bool {
-        self.text == text && matches!(self.kind, Kind::Mark | Kind::Open | Kind::Close | Kind::Word)
+        self.text == text
+            && matches!(self.kind, PieceKind::Mark | PieceKind::Open | PieceKind::Close | PieceKind::Word)
     }
 }
 
@@ -74,7 +75,7 @@ pub fn pieces(text: &str) -> Option<Vec<Piece<'_>>> {
     Some(pieces)
 }
 
-fn piece<'a>(kind: Kind, text: &'a str, gap: &str) -> Piece<'a> {
+fn piece<'a>(kind: PieceKind, text: &'a str, gap: &str) -> Piece<'a> {
     Piece { kind, text, line_ends: gap.matches('\n').count(), is_apart: !gap.is_empty() }
 }
 
@@ -85,13 +86,13 @@ fn gap_before(text: &str, place: usize) -> &str {
 }
 
 /// Kinds and places of all tokens, brackets flattened. Nothing here recurses, so brackets may be nested as deep as they like.
-fn places(text: &str, tokens: TokenStream) -> Option<Vec<(Kind, Range<usize>, bool)>> {
-    let mut found: Vec<(Kind, Range<usize>, bool)> = Vec::new();
+fn places(text: &str, tokens: TokenStream) -> Option<Vec<(PieceKind, Range<usize>, bool)>> {
+    let mut found: Vec<(PieceKind, Range<usize>, bool)> = Vec::new();
     let mut streams: Vec<(IntoIter, Option<Range<usize>>)> = vec![(tokens.into_iter(), None)];
     let mut doc = 0..0;
     while let Some((stream, close)) = streams.last_mut() {
         let Some(tree) = stream.next() else {
-            found.extend(close.take().map(|place| (Kind::Close, place, false)));
+            found.extend(close.take().map(|place| (PieceKind::Close, place, false)));
             streams.pop();
             continue;
         };
@@ -102,30 +103,32 @@ fn places(text: &str, tokens: TokenStream) -> Option<Vec<(Kind, Range<usize>, bo
         match tree {
             TokenTree::Group(group) if group.delimiter() == Delimiter::None => return None,
             TokenTree::Group(group) => {
-                found.push((Kind::Open, group.span_open().byte_range(), false));
+                found.push((PieceKind::Open, group.span_open().byte_range(), false));
                 let close = Some(group.span_close().byte_range());
                 streams.push((group.stream().into_iter(), close));
             }
             TokenTree::Punct(_) if text.get(place.clone())?.starts_with('/') && place.len() > 1 => {
                 doc = place.clone();
-                found.push((Kind::Doc, place, false));
+                found.push((PieceKind::Doc, place, false));
             }
             TokenTree::Punct(mark) => {
-                found.push((Kind::Mark, place, mark.spacing() == Spacing::Joint));
+                found.push((PieceKind::Mark, place, mark.spacing() == Spacing::Joint));
             }
-            TokenTree::Ident(_) => found.push((Kind::Word, place, false)),
-            TokenTree::Literal(_) => found.push((Kind::Literal, place, false)),
+            TokenTree::Ident(_) => found.push((PieceKind::Word, place, false)),
+            TokenTree::Literal(_) => found.push((PieceKind::Literal, place, false)),
         }
     }
     Some(found)
 }
 
 /// The same with marks of several characters as one.
-fn joined(text: &str, places: Vec<(Kind, Range<usize>, bool)>) -> Vec<(Kind, Range<usize>)> {
-    let mut found: Vec<(Kind, Range<usize>)> = Vec::with_capacity(places.len());
+fn joined(text: &str, places: Vec<(PieceKind, Range<usize>, bool)>) -> Vec<(PieceKind, Range<usize>)> {
+    let mut found: Vec<(PieceKind, Range<usize>)> = Vec::with_capacity(places.len());
     let mut is_joint = false;
     for (kind, place, joint) in places {
-        let last = found.last_mut().filter(|(last, _)| is_joint && *last == Kind::Mark && kind == Kind::Mark);
+        let last = found
+            .last_mut()
+            .filter(|(last, _)| is_joint && *last == PieceKind::Mark && kind == PieceKind::Mark);
         match last {
             Some((_, last)) if JOINED.contains(&&text[last.start..place.end]) => last.end = place.end,
             _ => found.push((kind, place)),
@@ -143,8 +146,8 @@ fn comments<'a>(text: &'a str, place: Range<usize>, pieces: &mut Vec<Piece<'a>>)
         let start = at + (rest.len() - rest.trim_start().len());
         let rest = text.get(start..place.end)?;
         let (kind, length) = match rest.get(..2) {
-            Some("//") => (Kind::LineComment, rest.find('\n').unwrap_or(rest.len())),
-            Some("/*") => (Kind::BlockComment, block_comment(rest)?),
+            Some("//") => (PieceKind::LineComment, rest.find('\n').unwrap_or(rest.len())),
+            Some("/*") => (PieceKind::BlockComment, block_comment(rest)?),
             _ => return rest.is_empty().then_some(()),
         };
         pieces.push(piece(kind, rest.get(..length)?.trim_end(), text.get(at..start)?));

@@ -2,7 +2,7 @@
 
 use super::LEVEL;
 use super::lines::{self, WIDTH};
-use super::pieces::{Kind, Piece};
+use super::pieces::{Piece, PieceKind};
 
 /// Statements whose braces hold statements; those of others hold fields.
 const BLOCKS: [&str; 4] = ["constraint", "for", "effect", "scene"];
@@ -41,7 +41,7 @@ impl Page {
             if piece.line_ends > 1 && !is_first {
                 self.text.push('\n');
             }
-            let is_behind = piece.line_ends == 0 && !self.text.is_empty() && piece.kind != Kind::Doc;
+            let is_behind = piece.line_ends == 0 && !self.text.is_empty() && piece.kind != PieceKind::Doc;
             let length = if piece.is_comment() {
                 match is_behind {
                     true => self.append(piece.text),
@@ -92,16 +92,16 @@ fn statement(pieces: &[Piece<'_>]) -> usize {
     let is_attribute = pieces.first().is_some_and(|first| first.is("#"));
     for (index, piece) in pieces.iter().enumerate() {
         match piece.kind {
-            Kind::Open => depth += 1,
-            Kind::Close => {
+            PieceKind::Open => depth += 1,
+            PieceKind::Close => {
                 depth = depth.saturating_sub(1);
                 if depth == 0 && (piece.is("}") || is_attribute) {
                     return index + 1;
                 }
             }
-            Kind::Mark if depth == 0 && piece.is(";") => return index + 1,
+            PieceKind::Mark if depth == 0 && piece.is(";") => return index + 1,
             // A doc comment belongs to the next statement.
-            Kind::Doc if depth == 0 && index > 0 => return index,
+            PieceKind::Doc if depth == 0 && index > 0 => return index,
             _ => {}
         }
     }

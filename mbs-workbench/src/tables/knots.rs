@@ -8,7 +8,7 @@
 use mbs_runtime::driver::FitError;
 
 use super::Points;
-use super::spline::{Kind, Spline, even};
+use super::spline::{Spline, SplineKind, even};
 
 /// Points a knot of the fits that are compared.
 const SHARES: [f64; 10] = [2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0];
@@ -73,7 +73,7 @@ impl Advice {
     ///
     /// # Errors
     /// [`FitError`], as the fits themselves.
-    pub fn of(points: &Points, kind: Kind) -> Result<Option<Self>, FitError> {
+    pub fn of(points: &Points, kind: SplineKind) -> Result<Option<Self>, FitError> {
         Self::with(&points.x, &points.y, kind, |count| even(&points.x, kind, count))
     }
 
@@ -84,7 +84,7 @@ impl Advice {
     pub fn with(
         x: &[f64],
         y: &[f64],
-        kind: Kind,
+        kind: SplineKind,
         places: impl Fn(usize) -> Vec<f64>,
     ) -> Result<Option<Self>, FitError> {
         let count = |share: f64| (x.len() as f64 / share) as usize;
@@ -149,7 +149,7 @@ mod tests {
             [(360, 1e-3, 5), (360, 1e-5, 5), (720, 1e-3, 3), (360, 1e-2, 2), (180, 1e-4, 9), (1440, 1e-4, 12)]
         {
             let (points, second) = table(count, noise, highest);
-            let kind = Kind::PeriodicQuintic(TAU);
+            let kind = SplineKind::PeriodicQuintic(TAU);
             let advice = Advice::of(&points, kind).expect("fits").expect("enough points");
             let truth = |knots: usize| {
                 let fit = Spline::fit(&points.x, &points.y, kind, Some(knots)).expect("a fit");
@@ -171,6 +171,6 @@ mod tests {
     #[test]
     fn too_few_points_get_no_advice() {
         let (points, _) = table(20, 1e-3, 2);
-        assert_eq!(Advice::of(&points, Kind::PeriodicQuintic(TAU)), Ok(None));
+        assert_eq!(Advice::of(&points, SplineKind::PeriodicQuintic(TAU)), Ok(None));
     }
 }

@@ -6,8 +6,8 @@ use mbs_codegen::{Quantity, quantity};
 use mbs_runtime::driver::End;
 
 use super::Unit;
-use super::reader::{Fault, Head, read_columns};
-use super::spline::{Kind, Spline};
+use super::reader::{Head, ReadFault, read_columns};
+use super::spline::{Spline, SplineKind};
 use crate::motion::course::Course;
 
 /// Rows that an interpolation needs at least: a cubic spline with parabolas at its ends.
@@ -37,11 +37,11 @@ impl Measured {
     /// `name`, else in the one that is left beside times and rates. Rates and accelerations are in columns called as the values with
     /// `_d` and `_dd` behind, as in tables of `mbs`. Else they are in those with the units of rates.
     ///
-    /// Angles within one turn that jump by more than half a turn are those of an encoder: whole turns are added, so that they go on.
+    /// Angles within one turn that jump by more than half a turn are those of an encoder. Whole turns are added, so that they go on.
     ///
     /// # Errors
     /// The first fault.
-    pub fn read(bytes: &[u8], name: &str, unit: &str) -> Result<Self, Fault> {
+    pub fn read(bytes: &[u8], name: &str, unit: &str) -> Result<Self, ReadFault> {
         let mut has_rates = [false; 2];
         let table = read_columns(bytes, |head| {
             let (columns, found) = columns(head, name, unit)?;
@@ -64,9 +64,9 @@ impl Measured {
     ///
     /// # Errors
     /// Too few rows.
-    pub fn course(&self) -> Result<Course, Fault> {
+    pub fn course(&self) -> Result<Course, ReadFault> {
         let fault = |message: String| {
-            Fault::new(
+            ReadFault::new(
                 0,
                 0,
                 message,
@@ -77,7 +77,7 @@ impl Measured {
             return Err(fault(format!("the file has {} rows alone", self.time.len())));
         }
         let spline = |values: &[f64]| {
-            Spline::fit(&self.time, values, Kind::Cubic([End::Parabolic; 2]), None)
+            Spline::fit(&self.time, values, SplineKind::Cubic([End::Parabolic; 2]), None)
                 .map_err(|error| fault(format!("no spline goes through the points: {error:?}")))
         };
         let fitted = spline(self.rate.as_ref().unwrap_or(&self.value))?;
@@ -125,8 +125,8 @@ fn fits(unit: &Unit, declared: &str, seconds: usize) -> bool {
 type Chosen = (Vec<(usize, Unit)>, [bool; 2]);
 
 /// Columns of times, values, rates and accelerations.
-fn columns(head: &Head, name: &str, unit: &str) -> Result<Chosen, Fault> {
-    let fault = |message: String, cure: &str| Fault::new(head.line, 0, message, cure);
+fn columns(head: &Head, name: &str, unit: &str) -> Result<Chosen, ReadFault> {
+    let fault = |message: String, cure: &str| ReadFault::new(head.line, 0, message, cure);
     let header = format!("write a header with units: `t (s), {name} ({unit})`");
     if !head.is_header {
         return Err(fault("the first line is no header".to_string(), &header));
@@ -143,7 +143,7 @@ fn columns(head: &Head, name: &str, unit: &str) -> Result<Chosen, Fault> {
         Some(value) if fits(&value.2, unit, 0) => *value,
         Some((index, column, found)) => {
             let message = format!("`{column}` is in `{}`, `{name}` in `{unit}`", found.name);
-            return Err(Fault::new(
+            return Err(ReadFault::new(
                 head.line,
                 index + 1,
                 message,
@@ -183,7 +183,7 @@ mod tests {
         Measured::read(text.as_bytes(), "theta", "rad").expect(text)
     }
 
-    fn fault(text: &str) -> Fault {
+    fn fault(text: &str) -> ReadFault {
         Measured::read(text.as_bytes(), "theta", "rad").and_then(|read| read.course()).expect_err(text)
     }
 

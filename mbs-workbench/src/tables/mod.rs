@@ -15,7 +15,7 @@ mod table;
 mod unit;
 pub mod valley;
 
-pub use reader::{Columns, Fault, Points, read, read_unordered};
-pub use spline::{Kind, SEED, Spline, close_period};
+pub use reader::{Columns, Points, ReadFault, read, read_unordered};
+pub use spline::{SEED, Spline, SplineKind, close_period};
 pub use table::{Table, TableError};
 pub use unit::Unit;

@@ -6,7 +6,7 @@ use super::Unit;
 
 /// Fault of a file with its place and cure.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct ReadFault {
     /// Line of the file, from 1; 0 for the file as a whole.
     pub line: usize,
     /// Column of the table, from 1; 0 for the line as a whole.
@@ -17,13 +17,13 @@ pub struct Fault {
     pub cure: String,
 }
 
-impl Fault {
+impl ReadFault {
     pub(super) fn new(line: usize, column: usize, message: String, cure: &str) -> Self {
-        Fault { line, column, message, cure: cure.to_string() }
+        ReadFault { line, column, message, cure: cure.to_string() }
     }
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for ReadFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.line, self.column) {
             (0, _) => write!(f, "{}", self.message)?,
@@ -128,14 +128,14 @@ pub struct Points {
 ///
 /// # Errors
 /// The first fault.
-pub fn read(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, Fault> {
+pub fn read(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, ReadFault> {
     read_points(bytes, columns, true)
 }
 
-fn read_points(bytes: &[u8], columns: Option<&Columns>, is_ordered: bool) -> Result<Points, Fault> {
+fn read_points(bytes: &[u8], columns: Option<&Columns>, is_ordered: bool) -> Result<Points, ReadFault> {
     let choose = |head: &Head| {
         let Columns { x, y } = columns.cloned().or_else(|| Columns::of_header(head)).ok_or_else(|| {
-            Fault::new(
+            ReadFault::new(
                 head.line,
                 0,
                 "the units of the columns are not known".to_string(),
@@ -162,8 +162,8 @@ fn read_points(bytes: &[u8], columns: Option<&Columns>, is_ordered: bool) -> Res
 /// The first fault.
 pub fn read_columns(
     bytes: &[u8],
-    choose: impl FnOnce(&Head) -> Result<Vec<(usize, Unit)>, Fault>,
-) -> Result<Table, Fault> {
+    choose: impl FnOnce(&Head) -> Result<Vec<(usize, Unit)>, ReadFault>,
+) -> Result<Table, ReadFault> {
     read_rows(bytes, choose, true)
 }
 
@@ -171,17 +171,22 @@ pub fn read_columns(
 ///
 /// # Errors
 /// The first fault.
-pub fn read_unordered(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, Fault> {
+pub fn read_unordered(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, ReadFault> {
     read_points(bytes, columns, false)
 }
 
 fn read_rows(
     bytes: &[u8],
-    choose: impl FnOnce(&Head) -> Result<Vec<(usize, Unit)>, Fault>,
+    choose: impl FnOnce(&Head) -> Result<Vec<(usize, Unit)>, ReadFault>,
     is_ordered: bool,
-) -> Result<Table, Fault> {
+) -> Result<Table, ReadFault> {
     if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) || bytes.contains(&0) {
-        return Err(Fault::new(0, 0, "the file is not text in UTF-8".to_string(), "save it as CSV in UTF-8"));
+        return Err(ReadFault::new(
+            0,
+            0,
+            "the file is not text in UTF-8".to_string(),
+            "save it as CSV in UTF-8",
+        ));
     }
     // Names of other encodings lose their accents, numbers do not.
     let text = String::from_utf8_lossy(bytes);
@@ -191,7 +196,7 @@ fn read_rows(
         !line.is_empty() && !line.starts_with('#')
     });
     let nothing =
-        || Fault::new(0, 0, "the file has no lines of numbers".to_string(), "write one point a line");
+        || ReadFault::new(0, 0, "the file has no lines of numbers".to_string(), "write one point a line");
     let (first_number, first) = lines.next().ok_or_else(nothing)?;
     let separator = [';', '\t'].into_iter().find(|c| first.contains(*c)).unwrap_or(',');
     let head = cells(first, separator);
@@ -209,7 +214,7 @@ fn read_rows(
         if is_ordered && !rises {
             let index = columns[0].0;
             let message = format!("{} is not above the line before", row[index]);
-            return Err(Fault::new(line, index + 1, message, "sort the lines and remove repeated ones"));
+            return Err(ReadFault::new(line, index + 1, message, "sort the lines and remove repeated ones"));
         }
         numbers.push(line);
     }
@@ -240,9 +245,9 @@ fn number(cell: &str, separator: char) -> Option<f64> {
     plain.or_else(|| if separator == ',' { None } else { cell.replacen(',', ".", 1).parse().ok() })
 }
 
-fn value(row: &[String], column: &(usize, Unit), line: usize, separator: char) -> Result<f64, Fault> {
+fn value(row: &[String], column: &(usize, Unit), line: usize, separator: char) -> Result<f64, ReadFault> {
     let (index, unit) = column;
-    let fault = |message: String, cure: &str| Err(Fault::new(line, index + 1, message, cure));
+    let fault = |message: String, cure: &str| Err(ReadFault::new(line, index + 1, message, cure));
     let Some(cell) = row.get(*index) else {
         return fault(
             format!("the line has {} cells alone", row.len()),
@@ -272,7 +277,7 @@ mod tests {
         read(text.as_bytes(), Some(&Columns::parse("1, mm").expect("columns"))).expect(text)
     }
 
-    fn fault(text: &str) -> Fault {
+    fn fault(text: &str) -> ReadFault {
         read(text.as_bytes(), Some(&Columns::parse("1, mm").expect("columns"))).expect_err(text)
     }
 

@@ -4,11 +4,11 @@ use mbs_runtime::driver::{CubicRow, End, FitError, QuinticRow, Table, fit_cubic,
 use mbs_runtime::{Function, Scalar};
 
 use super::Points;
-use super::reader::Fault;
+use super::reader::ReadFault;
 
 /// Kind of spline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum SplineKind {
     /// Cubic, with its end conditions.
     Cubic([End; 2]),
     /// Quintic with a period, in SI.
@@ -44,7 +44,7 @@ impl Spline {
     ///
     /// # Errors
     /// [`FitError`], with the point or the knot.
-    pub fn fit(x: &[f64], y: &[f64], kind: Kind, knots: Option<usize>) -> Result<Self, FitError> {
+    pub fn fit(x: &[f64], y: &[f64], kind: SplineKind, knots: Option<usize>) -> Result<Self, FitError> {
         let knots = match knots {
             None => x.to_vec(),
             Some(count) => even(x, kind, count),
@@ -56,15 +56,15 @@ impl Spline {
     ///
     /// # Errors
     /// [`FitError`], with the point or the knot.
-    pub fn along(x: &[f64], y: &[f64], kind: Kind, knots: Vec<f64>) -> Result<Self, FitError> {
+    pub fn along(x: &[f64], y: &[f64], kind: SplineKind, knots: Vec<f64>) -> Result<Self, FitError> {
         let count = knots.len();
         let pieces = match kind {
-            Kind::Cubic(ends) => {
+            SplineKind::Cubic(ends) => {
                 let (mut rows, mut pieces) = (vec![CubicRow::EMPTY; count], vec![[0.0; 4]; count]);
                 fit_cubic(&knots, ends, x, y, &mut rows, &mut pieces)?;
                 Pieces::Cubic(pieces)
             }
-            Kind::PeriodicQuintic(period) => {
+            SplineKind::PeriodicQuintic(period) => {
                 let (mut rows, mut pieces) = (vec![QuinticRow::EMPTY; count], vec![[0.0; 6]; count]);
                 fit_periodic_quintic(&knots, period, x, y, &mut rows, &mut pieces)?;
                 Pieces::Quintic(pieces, period)
@@ -120,12 +120,12 @@ impl Spline {
     ///
     /// # Errors
     /// [`FitError`], as the fit itself.
-    pub fn noise_gain(&self, x: &[f64], kind: Kind) -> Result<f64, FitError> {
+    pub fn noise_gain(&self, x: &[f64], kind: SplineKind) -> Result<f64, FitError> {
         // Prescribed slopes are no noise.
         let kind = match kind {
-            Kind::Cubic(ends) => {
-                Kind::Cubic(ends.map(|end| if matches!(end, End::Slope(_)) { End::Slope(0.0) } else { end }))
-            }
+            SplineKind::Cubic(ends) => SplineKind::Cubic(
+                ends.map(|end| if matches!(end, End::Slope(_)) { End::Slope(0.0) } else { end }),
+            ),
             periodic => periodic,
         };
         let [first, last] = self.range();
@@ -151,13 +151,13 @@ fn sign(state: &mut u64) -> f64 {
 }
 
 /// Knots from the first point on, evenly to the last one or around the period.
-pub(super) fn even(x: &[f64], kind: Kind, count: usize) -> Vec<f64> {
+pub(super) fn even(x: &[f64], kind: SplineKind, count: usize) -> Vec<f64> {
     let (Some(first), Some(last)) = (x.first(), x.last()) else { return Vec::new() };
     match kind {
-        Kind::PeriodicQuintic(period) => {
+        SplineKind::PeriodicQuintic(period) => {
             (0..count).map(|k| first + period * k as f64 / count as f64).collect()
         }
-        Kind::Cubic(_) => (0..count)
+        SplineKind::Cubic(_) => (0..count)
             // The last one exactly, so that the last point is not outside.
             .map(|k| {
                 if k + 1 == count { *last } else { first + (last - first) * k as f64 / (count as f64 - 1.0) }
@@ -177,12 +177,12 @@ const SAME_ANGLE: f64 = 1e-8;
 ///
 /// # Errors
 /// A period that is too short, not covered, or a curve that does not close.
-pub fn close_period(points: &mut Points, period: f64) -> Result<bool, Fault> {
+pub fn close_period(points: &mut Points, period: f64) -> Result<bool, ReadFault> {
     let (first, last) = (0, points.x.len() - 1);
     let unit = points.columns.x.1.clone();
     let span = points.x[last] - points.x[first];
     let fault = |line: usize, column: usize, message: String, cure: &str| {
-        Err(Fault::new(line, column + 1, message, cure))
+        Err(ReadFault::new(line, column + 1, message, cure))
     };
     if span > period * (1.0 + SAME_ANGLE) {
         let message = format!(
@@ -254,7 +254,7 @@ mod tests {
     #[test]
     fn the_noise_gain_is_that_of_single_points() {
         let x = circle(60);
-        let kind = Kind::PeriodicQuintic(TAU);
+        let kind = SplineKind::PeriodicQuintic(TAU);
         for knots in [None, Some(12)] {
             let spline = Spline::fit(&x, &vec![0.0; 60], kind, knots).expect("a fit");
             let places = 240;

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use mbs_runtime::driver::FitError;
 use mbs_runtime::{Function, Scalar};
 
-use super::reader::{Columns, Fault, Points, read};
-use super::spline::{Kind, Pieces, Spline, close_period};
+use super::reader::{Columns, Points, ReadFault, read};
+use super::spline::{Pieces, Spline, SplineKind, close_period};
 
 /// Periodic quintic spline through or along the points of a table over one turn, in SI: four continuous derivatives.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub struct TableError {
     /// The file.
     pub path: PathBuf,
     /// Line, column, message and cure.
-    pub fault: Fault,
+    pub fault: ReadFault,
 }
 
 impl fmt::Display for TableError {
@@ -42,8 +42,8 @@ impl Table {
     /// A last line that repeats the first one a turn later is taken as the same point.
     ///
     /// # Errors
-    /// [`TableError`]: a file that cannot be read, a unit, a cell, the order of the lines, a turn that is not covered, a curve that
-    /// does not close.
+    /// [`TableError`]: a file that cannot be read, a faulty unit or cell, lines out of order, a turn not covered, a curve not
+    /// closed.
     pub fn from_csv(path: impl AsRef<Path>, columns: &str) -> Result<Self, TableError> {
         Self::of_file(path.as_ref(), columns, None)
     }
@@ -59,7 +59,7 @@ impl Table {
 
     fn of_file(path: &Path, columns: &str, knots: Option<usize>) -> Result<Self, TableError> {
         let named = |fault| TableError { path: path.to_path_buf(), fault };
-        let whole = |message: String, cure: &str| named(Fault::new(0, 0, message, cure));
+        let whole = |message: String, cure: &str| named(ReadFault::new(0, 0, message, cure));
         let columns = Columns::parse(columns)
             .map_err(|message| whole(message, "name the units of two columns: `\"deg, mm\"`"))?;
         let unit = &columns.x.1;
@@ -73,9 +73,9 @@ impl Table {
         let mut points = read(&bytes, Some(&columns)).map_err(named)?;
         close_period(&mut points, TAU).map_err(|fault| {
             let cure = "write the angles and values of one turn, the last line a step before the first one or equal to it";
-            named(Fault { cure: cure.to_string(), ..fault })
+            named(ReadFault { cure: cure.to_string(), ..fault })
         })?;
-        let spline = Spline::fit(&points.x, &points.y, Kind::PeriodicQuintic(TAU), knots)
+        let spline = Spline::fit(&points.x, &points.y, SplineKind::PeriodicQuintic(TAU), knots)
             .map_err(|error| named(explained(error, &points)))?;
         Ok(Table { spline })
     }
@@ -86,7 +86,7 @@ impl Table {
     }
 }
 
-fn explained(error: FitError, points: &Points) -> Fault {
+fn explained(error: FitError, points: &Points) -> ReadFault {
     let (point, cure) = match error {
         FitError::PointsNotIncreasing { point }
         | FitError::PointOutside { point }
@@ -99,7 +99,7 @@ fn explained(error: FitError, points: &Points) -> Fault {
         _ => (None, "check the table"),
     };
     let line = point.and_then(|point| points.lines.get(point).copied());
-    Fault::new(line.unwrap_or(0), line.map_or(0, |_| points.columns.x.0 + 1), error.to_string(), cure)
+    ReadFault::new(line.unwrap_or(0), line.map_or(0, |_| points.columns.x.0 + 1), error.to_string(), cure)
 }
 
 impl<T: Scalar> Function<T> for Table {

@@ -1,6 +1,6 @@
 //! Errors of splines along tables of a known function, by number of points, rounding of the ordinates and number of knots.
 //!
-//! More points bring a spline closer to the function, but its second derivative multiplies what the ordinates are rounded by with the
+//! More points bring a spline closer to the function. But its second derivative multiplies the rounding of the ordinates by the
 //! square of the number of knots. Between both the error has a lowest point.
 
 use core::fmt;
@@ -8,7 +8,7 @@ use core::fmt;
 use mbs_runtime::Reveal;
 use mbs_runtime::driver::End;
 
-use super::spline::{Kind, Spline};
+use super::spline::{Spline, SplineKind};
 
 /// A function over a period: value and two derivatives at an argument in SI.
 pub type Law<'a> = &'a dyn Fn(f64) -> [f64; 3];
@@ -175,9 +175,9 @@ fn errors(
     let rounded = |y: f64| if rounding > 0.0 { (y / rounding).round() * rounding } else { y };
     let y: Vec<f64> = x.iter().map(|x| rounded(law(*x)[0])).collect();
     let (kind, knots) = match form {
-        Form::Cubic => (Kind::Cubic([0.0, period].map(|x| End::Slope(law(x)[1]))), None),
-        Form::Quintic => (Kind::PeriodicQuintic(period), None),
-        Form::LeastSquares(_) => (Kind::PeriodicQuintic(period), Some(form.knots(points))),
+        Form::Cubic => (SplineKind::Cubic([0.0, period].map(|x| End::Slope(law(x)[1]))), None),
+        Form::Quintic => (SplineKind::PeriodicQuintic(period), None),
+        Form::LeastSquares(_) => (SplineKind::PeriodicQuintic(period), Some(form.knots(points))),
     };
     let spline = Spline::fit(&x, &y, kind, knots).ok()?;
     let places = PLACES * points;

@@ -18,7 +18,7 @@ pub struct Axis {
 
 /// A method that looks for the assembly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum BasinMethod {
     /// The lecture's full Newton–Raphson.
     Plain,
     /// The runtime's assembly, as if no branch were declared.
@@ -40,7 +40,7 @@ pub struct Solution {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// The method.
-    pub method: Method,
+    pub method: BasinMethod,
     /// Index of the solution found, none where the method failed; row by row from the highest of the second axis.
     pub cells: Vec<Option<usize>>,
 }
@@ -97,9 +97,9 @@ pub fn basins(
     t: f64,
     progress: &mut dyn FnMut(usize),
 ) -> Basins {
-    let mut methods = vec![Method::Plain, Method::Assemble];
+    let mut methods = vec![BasinMethod::Plain, BasinMethod::Assemble];
     if !mechanism.experiment().branches().is_empty() {
-        methods.push(Method::Declared);
+        methods.push(BasinMethod::Declared);
     }
     let mut found = Basins { axes, size, solutions: Vec::new(), maps: Vec::new() };
     let mut done = 0;
@@ -122,11 +122,11 @@ pub fn basins(
     found
 }
 
-fn solve(mechanism: &dyn AnyMechanism, method: Method, guess: &[f64], t: f64) -> Option<Vec<f64>> {
+fn solve(mechanism: &dyn AnyMechanism, method: BasinMethod, guess: &[f64], t: f64) -> Option<Vec<f64>> {
     match method {
-        Method::Plain => mechanism.experiment().newton_raphson(guess, t).ok().map(|(q, _)| q),
-        Method::Assemble => mechanism.experiment().assembled(guess, t, false).ok(),
-        Method::Declared => mechanism.experiment().assembled(guess, t, true).ok(),
+        BasinMethod::Plain => mechanism.experiment().newton_raphson(guess, t).ok().map(|(q, _)| q),
+        BasinMethod::Assemble => mechanism.experiment().assembled(guess, t, false).ok(),
+        BasinMethod::Declared => mechanism.experiment().assembled(guess, t, true).ok(),
     }
 }
 

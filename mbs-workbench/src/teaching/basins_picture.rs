@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::basins::{Axis, Basins, Map, Method, Solution};
+use super::basins::{Axis, BasinMethod, Basins, Map, Solution};
 use crate::erased::facade::AnyMechanism;
 use crate::output::svg::{COLOURS, FAILURE, label, open};
 
@@ -70,11 +70,11 @@ pub fn quantity(value: f64, unit: &str) -> String {
 }
 
 /// Name of a method over its map.
-pub fn heading(method: Method) -> &'static str {
+pub fn heading(method: BasinMethod) -> &'static str {
     match method {
-        Method::Plain => "full Newton–Raphson",
-        Method::Assemble => "assemble, no branch",
-        Method::Declared => "assemble, branch declared",
+        BasinMethod::Plain => "full Newton–Raphson",
+        BasinMethod::Assemble => "assemble, no branch",
+        BasinMethod::Declared => "assemble, branch declared",
     }
 }
 

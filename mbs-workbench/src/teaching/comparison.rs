@@ -38,7 +38,7 @@ pub struct Candidate {
 
 /// Reason why there is nothing to compare.
 #[derive(Debug)]
-pub enum Fault {
+pub enum ComparisonFault {
     /// The preset or the duration does not fit.
     Mismatch(Mismatch),
     /// The mechanism does not move.
@@ -50,16 +50,16 @@ pub enum Fault {
 /// Runs the first preset of `card` over its span in `steps` steps.
 ///
 /// # Errors
-/// [`Fault`].
-pub fn candidate(card: &Card, steps: usize) -> Result<Candidate, Fault> {
-    let picture = card.picture().map_err(Fault::Mismatch)?;
-    let mechanism = card.fixed_instance(&runs(&picture)[0]).map_err(Fault::Mismatch)?;
-    let duration = duration(picture.span.as_ref(), mechanism.as_ref()).map_err(Fault::Mismatch)?;
+/// [`ComparisonFault`].
+pub fn candidate(card: &Card, steps: usize) -> Result<Candidate, ComparisonFault> {
+    let picture = card.picture().map_err(ComparisonFault::Mismatch)?;
+    let mechanism = card.fixed_instance(&runs(&picture)[0]).map_err(ComparisonFault::Mismatch)?;
+    let duration = duration(picture.span.as_ref(), mechanism.as_ref()).map_err(ComparisonFault::Mismatch)?;
     let times = instants(duration, steps);
-    let motion = mechanism.follow(&times, &mut |_| ()).map_err(Fault::Failure)?;
-    let step_time = mechanism.time_a_step(&times).map_err(Fault::Failure)?;
-    let report =
-        mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene())).map_err(Fault::Text)?;
+    let motion = mechanism.follow(&times, &mut |_| ()).map_err(ComparisonFault::Failure)?;
+    let step_time = mechanism.time_a_step(&times).map_err(ComparisonFault::Failure)?;
+    let report = mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene()))
+        .map_err(ComparisonFault::Text)?;
     let condition = times.iter().enumerate().map(|(k, t)| {
         let q: Vec<f64> = motion.coordinates.iter().map(|curve| curve.q[k]).collect();
         let values = singular_values(&scaled_jacobian(mechanism.as_ref(), &q, *t));

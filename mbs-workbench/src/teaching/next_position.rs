@@ -8,7 +8,7 @@ use crate::motion::instants;
 
 /// A way to the next position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum StepMethod {
     /// Full Newton–Raphson from the previous position: the lecture's.
     Previous,
     /// Full Newton–Raphson from q + h q̇ + h²/2 q̈.
@@ -18,11 +18,11 @@ pub enum Way {
 }
 
 /// All ways, in the order of the table.
-pub const WAYS: [Way; 3] = [Way::Previous, Way::Predicted, Way::Stepper];
+pub const STEP_METHODS: [StepMethod; 3] = [StepMethod::Previous, StepMethod::Predicted, StepMethod::Stepper];
 
 /// One step from many positions of the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Trial {
+pub struct StepAttempts {
     /// Steps tried.
     pub count: usize,
     /// Steps that ended at the right position.
@@ -33,7 +33,7 @@ pub struct Trial {
     pub iterations: u32,
 }
 
-impl Trial {
+impl StepAttempts {
     /// Steps that did not converge.
     pub fn failed(&self) -> usize {
         self.count - self.right - self.wrong
@@ -47,7 +47,7 @@ impl Trial {
 
 /// A reference motion that steps are compared with.
 #[derive(Debug)]
-pub struct Course<'a> {
+pub struct ReferenceMotion<'a> {
     mechanism: &'a dyn AnyMechanism,
     times: Vec<f64>,
     positions: Vec<Vec<f64>>,
@@ -58,7 +58,7 @@ pub struct Course<'a> {
 /// Steps a duration in which the known motion is followed: half a degree of a turn.
 const FINE: usize = 720;
 
-impl<'a> Course<'a> {
+impl<'a> ReferenceMotion<'a> {
     /// Follows `mechanism` finely through twice `duration` (s) and takes `starts` positions of its first half.
     ///
     /// # Errors
@@ -69,12 +69,12 @@ impl<'a> Course<'a> {
         let position = |k: usize| motion.coordinates.iter().map(|curve| curve.q[k]).collect();
         let starts = (0..starts).map(|k| k * FINE / starts.max(1)).collect();
         let positions = (0..times.len()).map(position).collect();
-        Ok(Course { mechanism, times, positions, starts, scales: mechanism.coordinate_scales() })
+        Ok(ReferenceMotion { mechanism, times, positions, starts, scales: mechanism.coordinate_scales() })
     }
 
     /// One step of `h` (s), at most the duration, from every start by one way.
-    pub fn trial(&self, way: Way, h: f64) -> Trial {
-        let mut trial = Trial { count: self.starts.len(), ..Trial::default() };
+    pub fn trial(&self, way: StepMethod, h: f64) -> StepAttempts {
+        let mut trial = StepAttempts { count: self.starts.len(), ..StepAttempts::default() };
         for start in &self.starts {
             let (t, q) = (self.times[*start], &self.positions[*start]);
             let Ok((end, iterations)) = self.step(way, q, t, h) else { continue };
@@ -90,11 +90,11 @@ impl<'a> Course<'a> {
         trial
     }
 
-    fn step(&self, way: Way, q: &[f64], t: f64, h: f64) -> Result<(Vec<f64>, u32), Failure> {
+    fn step(&self, way: StepMethod, q: &[f64], t: f64, h: f64) -> Result<(Vec<f64>, u32), Failure> {
         match way {
-            Way::Previous => self.mechanism.experiment().newton_raphson(q, t + h),
-            Way::Stepper => self.mechanism.experiment().advance(q, t, t + h),
-            Way::Predicted => {
+            StepMethod::Previous => self.mechanism.experiment().newton_raphson(q, t + h),
+            StepMethod::Stepper => self.mechanism.experiment().advance(q, t, t + h),
+            StepMethod::Predicted => {
                 let [qd, qdd] = self.mechanism.experiment().rates(q, t)?;
                 let rates = qd.iter().zip(&qdd).map(|(qd, qdd)| h * qd + 0.5 * h * h * qdd);
                 let guess: Vec<f64> = q.iter().zip(rates).map(|(q, change)| q + change).collect();
@@ -112,7 +112,7 @@ impl<'a> Course<'a> {
 
     /// The largest step (s) up to which every trial was safe: the first unsafe one of `steps` (s, ascending) and
     /// the one before it, bisected. The last of `steps` where all are safe; 0 where the first is not.
-    pub fn largest_safe_step(&self, way: Way, steps: &[f64]) -> f64 {
+    pub fn largest_safe_step(&self, way: StepMethod, steps: &[f64]) -> f64 {
         /// Halvings: a thousandth of the distance of two steps.
         const HALVINGS: usize = 10;
         let unsafe_at = steps.iter().position(|h| !self.trial(way, *h).is_safe());

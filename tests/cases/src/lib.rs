@@ -10,4 +10,4 @@
 //! | `t6` to `t8` | a line of the library changed on purpose, which no test noticed | the target of that line |
 //!
 //! The first line of each file says what the fault was. Several files with one code are tests of one class. A fault without a file of its own is
-//! tested beside the one with which it was found, or in the tests of the code that was changed.
+//! tested with the one with which it was found, or in tests of the changed code.

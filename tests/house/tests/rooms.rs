@@ -76,6 +76,7 @@ const HOUSES: &[House] = &[
             "tables",
             "cams",
             "mismatch",
+            "study",
             "layout",
             "text_file",
             "card",

@@ -147,7 +147,7 @@ fn perturbed_runs_with_an_upright_twice_in_millimetres_end_just_as_right() {
 }
 
 #[test]
-fn any_step_between_half_a_millisecond_and_twelve_and_a_half_ends_within_a_millimetre() {
+fn four_bars_with_steps_to_12_ms_end_within_a_millimetre() {
     const RUNS: u32 = 40;
     const BOUND: f64 = 1e-3;
     let angle = exact(1.0);

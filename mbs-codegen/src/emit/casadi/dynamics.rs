@@ -13,9 +13,9 @@ use crate::model::springs::{SpringDamper, Turn};
 /// Before: a text with masses or forces. After: the definition is followed by `K`, the number of first-order states,
 /// and `dynamics(ca, q, v, t, der, z, l)`.
 ///
-/// The function returns terms of the kinetic and of the potential energy, the forces, the rates of the states, and the
-/// outputs of multipliers and states. A force is a dictionary: `work`, pairs of a value and the displacement that it
-/// acts along, without what is stored as potential energy; `rayleigh`, a function R or None.
+/// The function returns terms of the kinetic and of the potential energy, forces and rates of the states. It also
+/// returns the outputs that depend on multipliers or states. A force is a dictionary: `work`, pairs of a value and the
+/// displacement that it acts along, without what is stored as potential energy; `rayleigh`, a function R or None.
 pub fn definition(model: &Model, dynamics: &Dynamics, attribution: Option<&Attribution>, text: &mut String) {
     let _ = writeln!(text, "\n\nK = {}\n\n\ndef dynamics(ca, q, v, t, der, z, l):", dynamics.states.len());
     assignments(model, roots(dynamics), text);

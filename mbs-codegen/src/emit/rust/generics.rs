@@ -19,8 +19,8 @@ pub struct Generics {
 }
 
 impl Generics {
-    /// Before: the scenes of a text. After: one type a declared function, named as the function in capitals and lower
-    /// case, `LiftLaw` for `lift_law`, and different from every other type in reach.
+    /// Before: the scenes of a text. After: one type for each declared function, named as the function in camel case,
+    /// `LiftLaw` for `lift_law`. It differs from every other type in scope.
     pub fn of(text: &Text, scenes: &Scenes) -> Self {
         let mut taken: Vec<String> = vec!["T".into(), "S".into(), "AllEffects".into()];
         for scene in [""].into_iter().chain(scenes.scenes.iter().filter_map(Scene::label)) {

@@ -16,8 +16,8 @@ use crate::program::{BlockMethod, BlockProgram, Program};
 /// A compiler that saw where the rates are used would compute those of all blocks there, after the last position.
 const IN_PLACE: &str = "let [__q, __qd, __qdd] = ::core::hint::black_box(__motion);\n";
 
-/// Body of `solve_motion`, where the rates of a block can be solved while the next one waits for its position: for
-/// square blocks, several of which iterate, or one of four and more unknowns. `position` builds the position stage from its values.
+/// Body of `solve_motion`, where the rates of a block can be solved while the next one waits for its position. Such blocks are
+/// square, and several of them iterate or one has four or more unknowns. `position` builds the position stage from its values.
 pub fn solve(
     equations: &Equations,
     program: &Program,

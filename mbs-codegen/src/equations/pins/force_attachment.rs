@@ -6,7 +6,7 @@
 use super::attribution::{PlaneBody, Slopes};
 use super::velocities::{Here, Motions, Seen};
 use super::{Given, On, PinFault};
-use crate::equations::forces::{Acting, Place};
+use crate::equations::generalized_forces::{Acting, Place};
 use crate::model::Model;
 use crate::model::dynamics::{Action, Dynamics as Declared};
 use crate::symbolic::{Graph, NodeId};
@@ -25,8 +25,8 @@ pub struct Points<'a> {
 
 impl Points<'_> {
     /// Before: parts of forces, and the functions of their places. After: the bodies that the point of each belongs to, as it is
-    /// written. If there is none, or not the one that the text names, motion decides: the bodies with which the point moves in
-    /// every motion that the rows without the drives allow.
+    /// written. If there is none, or not the one that the text names, motion decides. Then they are the bodies with which the
+    /// point moves in every motion that the rows without the drives allow.
     pub fn attached(
         &self,
         g: &mut Graph,
@@ -62,8 +62,8 @@ impl Points<'_> {
         all
     }
 
-    /// Carrier of the point of a part of a force: the body that the text names, the ground where nothing moves the point, or
-    /// the one `able` body. `None` where no body carries it. `place` has the indices of its components.
+    /// Carrier of the point where a part of a force acts. It is the body that the text names, the ground where nothing moves
+    /// the point, or the one `able` body. `None` where no body carries it. `place` has the indices of its components.
     pub fn carrier(&self, part: &Acting, place: [usize; 2], able: &Able) -> Result<Option<On>, PinFault> {
         let Some(force) = self.declared.forces.get(part.force) else { return Ok(None) };
         let stands = self.slopes.is_fixed_point(place);

@@ -19,7 +19,7 @@ use self::force_attachment::Points;
 use self::places::{Misplaced, misplaced};
 use super::acting_bodies::{Attribution, On, RowMotion, Undetermined};
 use super::dynamics::Dynamics;
-use super::forces::Place;
+use super::generalized_forces::Place;
 use super::lower::{Clock, PIN};
 use super::sum::Sum;
 use super::{Equations, Row, again};

@@ -8,7 +8,7 @@ use crate::diagnostics::nearest;
 use crate::syntax::ast::{Name, StatementKind};
 use crate::syntax::expression::expression;
 use crate::syntax::parser::{GivenUp, Parser, Read};
-use crate::syntax::statement::{at_statement, end};
+use crate::syntax::statement_end::{at_statement, end};
 use crate::syntax::tokens::TokenKind;
 
 /// `true` where a statement of the picture begins: its word is a name where an operator or a bracket follows.

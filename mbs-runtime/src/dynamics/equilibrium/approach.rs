@@ -49,7 +49,7 @@ pub(crate) fn approach<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
         if !zero.less(here.imbalance) {
             return Ok(());
         }
-        let start = Way { model, t, from: y, answer: &here, step: &here.step };
+        let start = Move { model, t, from: y, answer: &here, step: &here.step };
         let found = match start.far_nearer() {
             Some(place) => Some(place),
             None => start.nearer()?,
@@ -62,7 +62,7 @@ pub(crate) fn approach<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
 }
 
 /// A move from a position on the rows.
-struct Way<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
+struct Move<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     t: R,
     from: &'a IntegratorState<R, N, S::States>,
@@ -72,7 +72,7 @@ struct Way<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     step: &'a [R; N],
 }
 
-impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R, N, M> {
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Move<'_, S, R, N, M> {
     /// The position on the rows after `share` of the move.
     fn after(&self, share: R) -> Result<Place<S, R, N, M>, Failure> {
         let mut trial = *self.from;
@@ -137,7 +137,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R,
             return None;
         }
         let unit = self.answer.unanswered.each(|part| part * (R::constant(LARGEST_STEP) / size));
-        let along = Way { step: &unit, ..*self };
+        let along = Move { step: &unit, ..*self };
         let (mut share, mut nearest) = (R::constant(1.0), None);
         for _ in 0..MOST_DOUBLINGS {
             if along.only_turns() && R::constant(WHOLE_TURN) < share * R::constant(LARGEST_STEP) {

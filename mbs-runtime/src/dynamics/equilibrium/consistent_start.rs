@@ -261,8 +261,8 @@ fn completed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     first
 }
 
-/// The position next to `q` (N) at `t` (s) in which the rows hold, the coordinates `held` as they are and the others moved
-/// the shortest way in the reference metric.
+/// The position next to `q` (N) at `t` (s) in which the rows hold. The coordinates `held` stay as they are, the others
+/// move the shortest way in the reference metric.
 ///
 /// # Errors
 /// [`FailureKind::NonFinite`]; [`FailureKind::OffConstraints`] where the others cannot meet the rows.

@@ -132,8 +132,9 @@ fn require_no_integral<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
     if last.integrated { Err(model.unbalanced(&last.step, t, MOST_ITERATIONS)) } else { Ok(()) }
 }
 
-/// 1 for each first-order state that may have other values at the equilibrium `found` too: where two integrate one
-/// error, where it pushes nothing, where its rate is 0 at rest for all its values. 0 where its value is unique.
+/// 1 for each first-order state that may have other values at the equilibrium `found` too, 0 where its value is
+/// unique. Cases are: two states integrate one error, a state acts on nothing, or its rate is 0 at rest for all
+/// its values.
 ///
 /// # Errors
 /// As [`linearize`](crate::dynamics::analyses::linearization::linearize()).

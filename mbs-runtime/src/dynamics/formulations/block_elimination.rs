@@ -156,8 +156,8 @@ fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 /// every independent motion has inertia in every lane. F is N − M, the number of independent coordinates:
 /// [`Partitioned::accelerations`] calls this with it.
 ///
-/// Straight through the blocks: one completion for q̈₀ and one for each motion R of an independent coordinate, products of
-/// those with M, LDLᵀ of RᵀMR, and one substitution for the multipliers.
+/// Straight through the blocks: one completion for q̈₀ and one for each motion R of an independent coordinate. Then
+/// products of those with M, LDLᵀ of RᵀMR, and one substitution for the multipliers.
 #[inline(always)]
 pub fn accelerations<S, T: Scalar, const N: usize, const M: usize, const F: usize>(
     mechanism: &S,

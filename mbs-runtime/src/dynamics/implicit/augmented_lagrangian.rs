@@ -42,8 +42,8 @@ const SUSPECT: f64 = 0.99;
 /// rule within the same iteration.
 ///
 /// The λ that holds the rows at a step's end compensates the rule's own error there too, a third of the change of the
-/// accelerations in the step: it is of order 1. With the force of the projection of the accelerations it is that of the state, of
-/// order 2. Friction, first-order states, power and loads are given this one.
+/// accelerations. So it is of order 1. With the force of the projection of the accelerations it is that of the state, of order 2.
+/// Friction, first-order states, power and loads are given this one.
 ///
 /// Next to a singular position the springs hold a direction by the square of the margin, and its multiplier grows with its reciprocal.
 /// There corrections close the rows and take the multipliers along.

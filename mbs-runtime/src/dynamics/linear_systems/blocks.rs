@@ -4,7 +4,7 @@ use crate::scalar::number::Real;
 
 /// One row of the system: N entries left, M right.
 #[derive(Clone, Copy, Debug)]
-struct Row<R, const N: usize, const M: usize> {
+struct BlockRow<R, const N: usize, const M: usize> {
     left: [R; N],
     right: [R; M],
 }
@@ -14,8 +14,8 @@ struct Row<R, const N: usize, const M: usize> {
 /// Source: Golub & Van Loan 2013, §3.4.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks<R, const N: usize, const M: usize> {
-    upper: [Row<R, N, M>; N],
-    lower: [Row<R, N, M>; M],
+    upper: [BlockRow<R, N, M>; N],
+    lower: [BlockRow<R, N, M>; M],
     /// Row that was brought up for each column.
     upper_pivots: [usize; N],
     lower_pivots: [usize; M],
@@ -30,7 +30,7 @@ pub(crate) struct Health<R> {
     pub growth: R,
 }
 
-impl<R: Real, const N: usize, const M: usize> Row<R, N, M> {
+impl<R: Real, const N: usize, const M: usize> BlockRow<R, N, M> {
     #[inline(always)]
     fn entry(&self, k: usize) -> R {
         let found = if k < N { self.left.get(k) } else { self.right.get(k - N) };
@@ -68,13 +68,13 @@ impl<R: Real, const N: usize, const M: usize> Blocks<R, N, M> {
     /// Factorises with `mass` above left, `phi_q` below left and its transpose above right.
     pub(crate) fn factorize(mass: &[[R; N]; N], phi_q: &[[R; N]; M]) -> (Self, Health<R>) {
         let zero = R::constant(0.0);
-        let mut upper = mass.map(|left| Row { left, right: [zero; M] });
+        let mut upper = mass.map(|left| BlockRow { left, right: [zero; M] });
         for (j, row) in upper.iter_mut().enumerate() {
             for (entry, constraint) in row.right.iter_mut().zip(phi_q) {
                 *entry = constraint.get(j).copied().unwrap_or(zero);
             }
         }
-        let lower = phi_q.map(|left| Row { left, right: [zero; M] });
+        let lower = phi_q.map(|left| BlockRow { left, right: [zero; M] });
         let mut blocks = Blocks { upper, lower, upper_pivots: [0; N], lower_pivots: [0; M] };
         let health = blocks.eliminate();
         (blocks, health)
@@ -123,7 +123,7 @@ impl<R: Real, const N: usize, const M: usize> Blocks<R, N, M> {
 
     /// The one index function over both blocks of rows.
     #[inline(always)]
-    fn row(&self, index: usize) -> Option<&Row<R, N, M>> {
+    fn row(&self, index: usize) -> Option<&BlockRow<R, N, M>> {
         if index < N { self.upper.get(index) } else { self.lower.get(index - N) }
     }
 
@@ -139,7 +139,7 @@ impl<R: Real, const N: usize, const M: usize> Blocks<R, N, M> {
     }
 
     #[inline(always)]
-    fn put(&mut self, index: usize, row: Row<R, N, M>) {
+    fn put(&mut self, index: usize, row: BlockRow<R, N, M>) {
         let place = if index < N { self.upper.get_mut(index) } else { self.lower.get_mut(index - N) };
         if let Some(place) = place {
             *place = row;
@@ -148,7 +148,7 @@ impl<R: Real, const N: usize, const M: usize> Blocks<R, N, M> {
 
     /// Solves for `f` (N) and `g` (M).
     pub(crate) fn solve(&self, f: [R; N], g: [R; M]) -> ([R; N], [R; M]) {
-        let mut x = Row { left: f, right: g };
+        let mut x = BlockRow { left: f, right: g };
         for (k, found) in self.upper_pivots.iter().chain(&self.lower_pivots).enumerate() {
             let (one, other) = (x.entry(k), x.entry(*found));
             x.set(k, other);
@@ -167,7 +167,7 @@ impl<R: Real, const N: usize, const M: usize> Blocks<R, N, M> {
     }
 }
 
-impl<R: Real, const N: usize, const M: usize> Row<R, N, M> {
+impl<R: Real, const N: usize, const M: usize> BlockRow<R, N, M> {
     #[inline(always)]
     fn set(&mut self, k: usize, value: R) {
         let place = if k < N { self.left.get_mut(k) } else { self.right.get_mut(k - N) };

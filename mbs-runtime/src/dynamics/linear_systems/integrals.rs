@@ -14,8 +14,8 @@ use crate::tolerances::forces;
 /// [`Saddle`](crate::dynamics::equilibrium::with_integrators::Saddle).
 #[derive(Clone, Copy)]
 pub(crate) struct Integrals<P, Z> {
-    /// Of each state that moves: ∂Q/∂z in the place of `q`, with the forces of states that follow it, and in that of `states` the
-    /// change of each state when it moves by 1. Zeros of the others.
+    /// Of each state that moves: ∂Q/∂z in the place of `q`, with the forces of states that follow it. In the place of `states`:
+    /// the change of each state when it moves by 1. Zeros of the others.
     pub pushes: P,
     /// Of each state whose rate depends on the coordinates alone: ∂ż/∂q with that of the states that follow them. Zeros of the
     /// others.

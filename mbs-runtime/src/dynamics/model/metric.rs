@@ -134,8 +134,8 @@ impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
         allowed
     }
 
-    /// Of each of `errors` (N) the largest component over its tolerance rtol ‖x‖ + atol scale, ‖x‖ the largest of `before`
-    /// and `after` (N) among the coordinates of the same unit.
+    /// Of each of `errors` (N) the largest component over its tolerance rtol ‖x‖ + atol scale. ‖x‖ is the largest of
+    /// `before` and `after` (N) among the coordinates of the same unit.
     ///
     /// A coordinate that passes zero is measured by its neighbours and not by itself; a small group cannot hide in a
     /// mean over all.

@@ -68,7 +68,7 @@ where
         Estimated { fine: self.clone(), coarse: self.with_tolerance(tolerance), largest: R::constant(0.0) }
     }
 
-    /// With a wanted error in place of a tolerance of steps: at most `accuracy` at the end of each
+    /// With a wanted error in place of a tolerance of steps. It is at most `accuracy` at the end of each
     /// [`advance_to`](Accurate::advance_to), in the reference metric (rad, reference lengths).
     ///
     /// ```

@@ -11,7 +11,7 @@ use crate::dynamics::integrators::step_control::{Accepted, Adaptive};
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::Tolerance;
 use crate::dynamics::model::{Counts, Formulation, Model};
-use crate::dynamics::simulation::fixed_run::event_failure;
+use crate::dynamics::simulation::fixed_run_events::event_failure;
 use crate::dynamics::simulation::{Fresh, Simulation};
 use crate::failure::Failure;
 use crate::linear_algebra::vectors::Each;

@@ -1,10 +1,6 @@
-//! Steps of fixed size, with events and contacts within them.
+//! Steps of fixed size, with contacts within them.
 
 use crate::dynamics::formulations::singular::passage::Passage;
-use crate::dynamics::integrators::event::monitor::{Monitor, Stopped};
-use crate::dynamics::integrators::event::{
-    Direction, MOST_BOUNDED_PARTS, MOST_RESOLVED, Scrutiny, Unanswered,
-};
 use crate::dynamics::integrators::step_control::{MOST_RETAKES, Point, cubic};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::instant::Instant;
@@ -16,43 +12,31 @@ use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::motion;
 
-/// The failure of an event function that is NaN or infinite.
-const UNDEFINED_EVENT: Failure = FailureKind::NonFinite { name: "event function", line: 0 }.without_time();
-
 /// Parts that contacts may cut a step of fixed size into.
-const MOST_PARTS: u32 = 8;
-
-/// Steps that an event is located by: the cubic of a step misses it by little, that of a step up to there by next to nothing.
-const MOST_TRIALS: u32 = 48;
-
-/// Factor by which a trial goes further than the one before that did not reach the event either.
-const GROWTH: f64 = 4.0;
-
-/// Share of a step over which the slope of an event function is taken.
-const SLOPE_SHARE: f64 = 1e-4;
+pub(super) const MOST_PARTS: u32 = 8;
 
 /// A step of fixed size that is not taken yet.
-struct Ahead<R, P, const N: usize, const M: usize, Z> {
+pub(super) struct Ahead<R, P, const N: usize, const M: usize, Z> {
     from: Fresh<R, N, M, Z>,
-    next: Instant<R, N, M, Z>,
+    pub(super) next: Instant<R, N, M, Z>,
     phases: Option<P>,
-    counts: Counts,
+    pub(super) counts: Counts,
 }
 
 impl<R: Real, P, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R]>> Ahead<R, P, N, M, Z> {
     /// Times (s) of its beginning and of its end.
-    fn times(&self) -> (R, R) {
+    pub(super) fn times(&self) -> (R, R) {
         (self.from.instant.t, self.next.t)
     }
 
     /// An event function at its end.
-    fn value(&self, event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R) -> R {
+    pub(super) fn value(&self, event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R) -> R {
         let Instant { t, y, .. } = &self.next;
         event(*t, &y.q, &y.qd)
     }
 
     /// The state at `t` (s): of the cubic through both ends.
-    fn at(&self, t: R) -> IntegratorState<R, N, Z> {
+    pub(super) fn at(&self, t: R) -> IntegratorState<R, N, Z> {
         let (from, next) = (&self.from.instant, &self.next);
         if next.t <= t {
             return next.y;
@@ -75,7 +59,7 @@ struct FixedStepAttempt<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: u
 }
 
 /// A step of a simulation.
-type AheadOf<S, R, const N: usize, const M: usize> =
+pub(super) type AheadOf<S, R, const N: usize, const M: usize> =
     Ahead<R, <S as crate::mechanism::Mechanism<R, N, M>>::Phases, N, M, <S as Dynamic<R, N, M>>::States>;
 
 impl<S, X, R, const N: usize, const M: usize> Simulation<S, X, R, N, M>
@@ -84,19 +68,6 @@ where
     X: Method<S, R, N, M>,
     R: Real,
 {
-    /// Nothing that lasts longer than `resolution` (s), positive, is missed of events, limits and contacts, whatever functions they
-    /// are. By default that is an eighth of each step; smooth functions are found however short they pass zero.
-    pub fn with_event_resolution(self, resolution: R) -> Self {
-        let scrutiny = Scrutiny { resolution: Some(resolution), ..self.scrutiny };
-        Simulation { scrutiny, ..self }
-    }
-
-    /// Bound of the second time derivatives |g̈| (unit of g per second squared) of the event functions g of this run,
-    /// positive. With it none of their passages is missed.
-    pub fn with_event_bound(self, bound: R) -> Self {
-        Simulation { scrutiny: Scrutiny { bound: Some(bound), ..self.scrutiny }, ..self }
-    }
-
     /// Moves on by one step of `h` (s), with a fixed amount of work. Exceptions are a step in which a contact closes or opens,
     /// and one next to a singular position. The first is cut there, into eight parts at most, each found by some steps. The
     /// second is taken in parts with an estimate of their error, by
@@ -157,69 +128,7 @@ where
         Ok(())
     }
 
-    /// As [`step_to`](Self::step_to), but stops where `event` of time, coordinates and velocities first reaches zero, even if it
-    /// turns back there. Returns `true` if it did. The step that ends there is shortened, so that the state is one of the method.
-    /// The event is searched on the cubic through the ends of each step. A value of 0 at the start has been passed already, and
-    /// the next call goes on after the event.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step); [`FailureKind::NonFinite`] where `event` is NaN or infinite; [`FailureKind::InvalidMethodParameter`] where the event bound asks for too many parts. The state is then that before the step that failed.
-    pub fn step_until_event(
-        &mut self,
-        until: R,
-        steps: u32,
-        direction: Direction,
-        mut event: impl FnMut(R, &[R; N], &[R; N]) -> R,
-    ) -> Result<bool, Failure> {
-        let from = self.now.t;
-        self.require_settings()?;
-        self.require_steps(until, steps)?;
-        if until == from {
-            return self.stand().map(|()| false);
-        }
-        self.require_resolution((until - from) / R::constant(f64::from(steps)))?;
-        let fresh = self.fresh(&mut Counts::default())?.instant;
-        let mut monitor = self.monitor(direction, &fresh, &mut event)?;
-        for index in 1..=steps {
-            let end = end_of(from, until, (index, steps));
-            for part in 1..=MOST_PARTS {
-                let h = end - self.now.t;
-                let to_kink = part < MOST_PARTS;
-                let whole = if to_kink { self.ahead_to_kink(h)? } else { self.ahead(h, self.counts, false)? };
-                let before = monitor;
-                let found = reached(&mut monitor, &whole, &mut event)?;
-                let (last, is_event) = match found {
-                    Some((t, _)) => self.ahead_to_event((whole, to_kink), t, before, &mut event)?,
-                    None => (whole, false),
-                };
-                self.check_ahead(&last)?;
-                self.go(last);
-                if let Some((_, scale)) = found.filter(|_| is_event) {
-                    let value = event(self.now.t, &self.now.y.q, &self.now.y.qd);
-                    self.stopped = Some(Stopped::new(self.now.t, value, scale));
-                    return Ok(true);
-                }
-                if end <= self.now.t {
-                    break;
-                }
-            }
-        }
-        Ok(false)
-    }
-
-    /// Fails where the resolution of events would divide a step of `h` (s) into more parts than are looked at.
-    fn require_resolution(&self, h: R) -> Result<(), Failure> {
-        let most = R::constant(8.0 * MOST_RESOLVED);
-        match self.scrutiny.resolution.map(|resolution| h / resolution).filter(|parts| most < *parts) {
-            Some(parts) => {
-                let (name, value) = ("length of a step over the event resolution", parts.to_f64());
-                Err(FailureKind::InvalidMethodParameter { name, value, most: most.to_f64() }.without_time())
-            }
-            None => Ok(()),
-        }
-    }
-
-    fn require_steps(&self, until: R, steps: u32) -> Result<(), Failure> {
+    pub(super) fn require_steps(&self, until: R, steps: u32) -> Result<(), Failure> {
         if steps == 0 {
             return Err(FailureKind::NoSteps { until: until.to_f64() }.at(self.now.t.to_f64()));
         }
@@ -228,7 +137,12 @@ where
 
     /// A step of `h` (s), with the failures of its end; `counts`: those before it; `without_open`: contacts that are open where
     /// it begins are left out.
-    fn ahead(&self, h: R, counts: Counts, without_open: bool) -> Result<AheadOf<S, R, N, M>, Failure> {
+    pub(super) fn ahead(
+        &self,
+        h: R,
+        counts: Counts,
+        without_open: bool,
+    ) -> Result<AheadOf<S, R, N, M>, Failure> {
         let mut open = None;
         let mut ahead = self.trial(h, counts, without_open.then_some(&mut open));
         if let Ok(known) = &ahead
@@ -285,7 +199,7 @@ where
     }
 
     /// Fails where a step leaves a working range or a branch.
-    fn check_ahead(&self, ahead: &AheadOf<S, R, N, M>) -> Result<(), Failure> {
+    pub(super) fn check_ahead(&self, ahead: &AheadOf<S, R, N, M>) -> Result<(), Failure> {
         let (model, (start, end)) = (self.model(), ahead.times());
         let unknown = [R::constant(0.0); N];
         model.check_ranges(start, (start, end), |t| ahead.at(t), (self.scrutiny.resolution, &unknown))?;
@@ -293,7 +207,7 @@ where
     }
 
     /// Takes a step.
-    fn go(&mut self, ahead: AheadOf<S, R, N, M>) {
+    pub(super) fn go(&mut self, ahead: AheadOf<S, R, N, M>) {
         let Ahead { from: Fresh { instant: from, gained, rank_rises }, next, phases, counts } = ahead;
         let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
         let passage = Passage::between(ends.0, ends.1);
@@ -322,7 +236,7 @@ where
     }
 
     /// A step of `h` (s), or up to where a contact closes or opens. Nothing after that is judged.
-    fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
+    pub(super) fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
         if const { S::CONTACTS.is_empty() } {
             return self.ahead(h, self.counts, false);
         }
@@ -387,135 +301,10 @@ where
         }
         Ok(())
     }
-
-    /// The step that ends at the event that the cubic of `whole` has at `t` (s), after it by rounding; `monitor` as it was
-    /// before. Or the whole step and false, where no step within it reaches the event.
-    fn ahead_to_event(
-        &self,
-        (whole, without_open): (AheadOf<S, R, N, M>, bool),
-        mut t: R,
-        monitor: Monitor<R>,
-        event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
-    ) -> Result<(AheadOf<S, R, N, M>, bool), Failure> {
-        let (start, end) = whole.times();
-        let least = motion::LEAST_STEP.of::<R>() * start.abs().max(end.abs());
-        let (half, mut before, mut growth) = (R::constant(0.5), start, R::constant(1.0));
-        let (mut behind, mut shortened, mut near) = (whole, false, None);
-        for _ in 0..MOST_TRIALS {
-            t = t.max(start + least);
-            if behind.next.t - t <= least {
-                break;
-            }
-            let trial = self.ahead(t - start, behind.counts, without_open)?;
-            let middle = |from: R, to: R| from + half * (to - from);
-            if let Some((found, _)) = reached(&mut monitor.clone(), &trial, event)? {
-                t = if before < found { found } else { middle(before, trial.next.t) };
-                (behind, shortened, growth) = (trial, true, R::constant(1.0));
-            } else {
-                let last = behind.next.t;
-                before = t;
-                behind.counts = trial.counts;
-                let further = t + growth * (further(&trial, event) + least);
-                t = if further < last { further } else { middle(t, last) };
-                growth = R::constant(GROWTH) * growth;
-                near = Some(trial.value(event));
-            }
-        }
-        let passed = |near: R| near * behind.value(event) <= R::constant(0.0);
-        let found = shortened || near.is_none_or(passed);
-        Ok((behind, found))
-    }
-
-    /// Fails if a setting of the run is not positive, or if the bound of an event's second derivative is not finite. With such a
-    /// bound every step would be searched as if it could hold any number of events.
-    pub(super) fn require_settings(&self) -> Result<(), Failure> {
-        let Scrutiny { resolution, bound, .. } = self.scrutiny;
-        let positive = |value: R| R::constant(0.0) < value;
-        let settings = [
-            ("largest step", Some(self.adaptive.largest), true),
-            ("event resolution", resolution, true),
-            ("event bound", bound, bound.is_none_or(R::is_finite)),
-        ];
-        for (setting, value, suits) in settings {
-            if let Some(value) = value.filter(|value| !(positive(*value) && suits)) {
-                return Err(FailureKind::InvalidMethodParameter {
-                    name: setting,
-                    value: value.to_f64(),
-                    most: f64::INFINITY,
-                }
-                .without_time());
-            }
-        }
-        Ok(())
-    }
-
-    /// An event function as it is where a run begins.
-    pub(super) fn monitor(
-        &self,
-        direction: Direction,
-        from: &Instant<R, N, M, S::States>,
-        event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
-    ) -> Result<Monitor<R>, Failure> {
-        let value = event(from.t, &from.y.q, &from.y.qd);
-        if value.partial_cmp(&value).is_none() {
-            return Err(UNDEFINED_EVENT);
-        }
-        let scrutiny = Scrutiny { touching: true, ..self.scrutiny };
-        Ok(Monitor::new(direction, scrutiny, (from.t, value), (self.stopped, self.stale)))
-    }
-}
-
-/// The failure of an event function of which a step does not tell where it reaches zero.
-#[cold]
-pub(super) fn event_failure<R: Real>(why: Unanswered<R>) -> Failure {
-    match why {
-        Unanswered::Undefined(_) => UNDEFINED_EVENT,
-        Unanswered::OutOfParts(_) => {
-            let most = f64::from(MOST_BOUNDED_PARTS);
-            let name = "number of parts that the event bound divides a step into";
-            FailureKind::InvalidMethodParameter { name, value: most + 1.0, most }.without_time()
-        }
-    }
 }
 
 /// End (s) of one step of several.
-fn end_of<R: Real>(from: R, until: R, (index, steps): (u32, u32)) -> R {
+pub(super) fn end_of<R: Real>(from: R, until: R, (index, steps): (u32, u32)) -> R {
     let share = R::constant(f64::from(index)) / R::constant(f64::from(steps));
     if index == steps { until } else { from + (until - from) * share }
-}
-
-/// Time (s) at which an event is reached on the cubic of a step, and the scale of its function.
-fn reached<R: Real, P, Z, const N: usize, const M: usize>(
-    monitor: &mut Monitor<R>,
-    ahead: &Ahead<R, P, N, M, Z>,
-    event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
-) -> Result<Option<(R, R)>, Failure>
-where
-    Z: Copy + AsRef<[R]> + AsMut<[R]>,
-{
-    let found = monitor.first(ahead.times(), |t| {
-        let y = ahead.at(t);
-        event(t, &y.q, &y.qd)
-    });
-    let found = found.map_err(event_failure)?;
-    Ok(found.map(|reach| (reach.t, reach.scale)))
-}
-
-/// Time (s) after the end of a step at which its slope leads an event function to zero; 0 where it leads away.
-fn further<R: Real, P, Z, const N: usize, const M: usize>(
-    ahead: &Ahead<R, P, N, M, Z>,
-    event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
-) -> R
-where
-    Z: Copy + AsRef<[R]> + AsMut<[R]>,
-{
-    let (start, end) = ahead.times();
-    let width = (end - start) * R::constant(SLOPE_SHARE);
-    let mut at = |t: R| {
-        let y = ahead.at(t);
-        event(t, &y.q, &y.qd)
-    };
-    let value = at(end);
-    let distance = value * width / (at(end - width) - value);
-    if R::constant(0.0) < distance && distance.is_finite() { distance } else { R::constant(0.0) }
 }

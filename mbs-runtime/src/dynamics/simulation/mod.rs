@@ -5,6 +5,7 @@ pub(crate) mod adaptive_run;
 pub(crate) mod checks;
 pub(crate) mod contact;
 pub(crate) mod fixed_run;
+pub(crate) mod fixed_run_events;
 pub(crate) mod reading;
 
 use crate::dynamics::equilibrium::consistent_start;

@@ -93,7 +93,7 @@ fn course(fate: Stability) -> &'static str {
     }
 }
 
-/// Verdict on an unstable rest: the stable one that it falls to, and the time in which small motions grow.
+/// Verdict on an unstable equilibrium: the stable one reached from it, and the time constant of its small motions.
 fn fall(fate: Stability, settled: Option<&Motion>, held: bool) -> String {
     /// Coordinates that name a position.
     const NAMED: usize = 3;

@@ -4,7 +4,7 @@
 
 use mbs_runtime::Scalar;
 
-use super::linear::{Factors, Matrix};
+use super::linear::{LuFactors, Matrix};
 use super::motion::{Aim, Solved, StepMethod, Tried};
 use crate::double_double::DoubleDouble as D;
 use crate::erased::exact::{ExactEquations, Moving};
@@ -24,13 +24,13 @@ pub struct Collocated {
     /// ∫₀^cᵢ of the j-th Lagrange polynomial: rows of the Butcher matrix.
     weights: Vec<Vec<D>>,
     inverse: Vec<Vec<D>>,
-    last: Option<Stages>,
-    tried: Option<Stages>,
+    last: Option<CollocationStages>,
+    tried: Option<CollocationStages>,
 }
 
 /// Values at the stages of a step.
 #[derive(Clone)]
-struct Stages {
+struct CollocationStages {
     h: D,
     qdd: Vec<Vec<D>>,
     lambda: Vec<Vec<D>>,
@@ -48,7 +48,7 @@ impl Default for Collocated {
 
 impl Collocated {
     /// The polynomial through stages of the last step, at the stages of the next one of `h` (s).
-    fn predicted(&self, last: &Stages, values: &[Vec<D>], h: D) -> Vec<Vec<D>> {
+    fn predicted(&self, last: &CollocationStages, values: &[Vec<D>], h: D) -> Vec<Vec<D>> {
         let ratio = h / last.h;
         let at = |node: &D| {
             let x = D::constant(1.0) + *node * ratio;
@@ -87,20 +87,20 @@ impl StepMethod for Collocated {
         let (n, m) = (from.q.len(), solved.lambda.len());
         let constant = |values: &[D]| vec![values.to_vec(); STAGES];
         let mut stages = match &self.last {
-            Some(last) => Stages {
+            Some(last) => CollocationStages {
                 h,
                 qdd: self.predicted(last, &last.qdd, h),
                 lambda: self.predicted(last, &last.lambda, h),
                 states: self.predicted(last, &last.states, h),
             },
-            None => Stages {
+            None => CollocationStages {
                 h,
                 qdd: constant(&solved.qdd),
                 lambda: constant(&solved.lambda),
                 states: constant(&solved.state_rates),
             },
         };
-        let mut factors: Vec<Factors> = Vec::new();
+        let mut factors: Vec<LuFactors> = Vec::new();
         let mut last = f64::INFINITY;
         let mut end = None;
         for iteration in 0..ITERATIONS {
@@ -180,7 +180,7 @@ impl StepMethod for Collocated {
 
 impl Collocated {
     /// States at the stages.
-    fn places(&self, from: &Moving, stages: &Stages, h: D) -> Vec<Moving> {
+    fn places(&self, from: &Moving, stages: &CollocationStages, h: D) -> Vec<Moving> {
         let qd: Vec<Vec<D>> = self
             .weights
             .iter()
@@ -197,7 +197,7 @@ impl Collocated {
 
     /// Error of the end from the decay of the coefficients of the stages' polynomial: a polynomial of degree s − 1 whose last
     /// coefficient is a part ρ^(s−1) of the largest leaves ρ^(2s−1) at the end of the step.
-    fn error(&self, stages: &Stages, h: D, aim: &Aim) -> f64 {
+    fn error(&self, stages: &CollocationStages, h: D, aim: &Aim) -> f64 {
         let count = self.nodes.len();
         let highest: Vec<D> = (0..count)
             .map(|j| {

@@ -15,7 +15,7 @@ pub struct Matrix {
 
 /// LU factors with complete pivoting in `f64` of a matrix whose rows and columns are scaled by powers of two.
 #[derive(Clone, Debug)]
-pub struct Factors {
+pub struct LuFactors {
     size: usize,
     entries: Vec<f64>,
     rows: Vec<usize>,
@@ -82,7 +82,7 @@ impl Matrix {
     }
 
     /// Factors for [`solve`](Self::solve).
-    pub fn factors(&self) -> Factors {
+    pub fn factors(&self) -> LuFactors {
         let size = self.size;
         let scales: Vec<f64> = (0..size).map(|i| self.scale(i)).collect();
         let mut entries: Vec<f64> = self.entries.iter().map(|entry| entry.high).collect();
@@ -91,7 +91,7 @@ impl Matrix {
                 entries[i * size + j] *= scales[i] * scales[j];
             }
         }
-        let mut factors = Factors {
+        let mut factors = LuFactors {
             size,
             entries,
             rows: (0..size).collect(),
@@ -112,12 +112,12 @@ impl Matrix {
 
     /// The solution of `self` x = `b` to all digits; a basic one where rows follow from others. None where corrections do not fall:
     /// the matrix is singular to sixteen digits, or `b` contradicts the rows.
-    pub fn solve(&self, factors: &Factors, b: &[D]) -> Option<Vec<D>> {
+    pub fn solve(&self, factors: &LuFactors, b: &[D]) -> Option<Vec<D>> {
         self.solve_within(factors, b, 0.0)
     }
 
     /// As [`solve`](Self::solve), where rows that follow from others may contradict them by `slack`: the rounding of the text's constants.
-    pub fn solve_within(&self, factors: &Factors, b: &[D], slack: f64) -> Option<Vec<D>> {
+    pub fn solve_within(&self, factors: &LuFactors, b: &[D], slack: f64) -> Option<Vec<D>> {
         let mut x = vec![D::constant(0.0); self.size];
         let mut rest = b.to_vec();
         let mut last = f64::INFINITY;
@@ -151,7 +151,7 @@ impl Matrix {
 
 impl Matrix {
     /// `true` where what is left of `b` is little: rows that follow from others have no pivot that could meet them.
-    fn is_met(&self, factors: &Factors, (rest, b): (&[D], &[D]), slack: f64) -> bool {
+    fn is_met(&self, factors: &LuFactors, (rest, b): (&[D], &[D]), slack: f64) -> bool {
         let largest = |values: &[D]| {
             values
                 .iter()
@@ -163,7 +163,7 @@ impl Matrix {
     }
 }
 
-impl Factors {
+impl LuFactors {
     fn factorize(&mut self) {
         let size = self.size;
         let mut first = 0.0;

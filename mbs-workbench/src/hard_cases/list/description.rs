@@ -31,7 +31,7 @@ pub struct Description {
     pub unresolved: bool,
     /// Largest error of each kind of method, as a part of the size of what is compared. Methods of other kinds are not run.
     #[serde(default)]
-    pub bounds: BTreeMap<Kind, f64>,
+    pub bounds: BTreeMap<MethodKind, f64>,
     /// Values that are known.
     #[serde(default)]
     pub known: Vec<Known>,
@@ -47,7 +47,7 @@ pub struct Description {
 /// Kind of a method, by the bound that it can keep.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum MethodKind {
     /// Steps that a tolerance of 1e-8 allows, rows closed.
     Adaptive,
     /// Equal steps of order 4, rows closed.
@@ -179,17 +179,17 @@ impl Description {
     }
 }
 
-impl Kind {
+impl MethodKind {
     /// Kind of a method for motions from forces.
     pub fn of(method: MotionMethod) -> Self {
         use FormulationName::{Baumgarte, Penalty, Unstabilized};
         match method {
-            MotionMethod::Implicit(_) => Kind::Implicit,
-            MotionMethod::Explicit(Penalty, _) => Kind::Soft,
-            MotionMethod::Explicit(_, IntegratorName::SemiImplicitEuler) => Kind::Euler,
-            MotionMethod::Explicit(Baumgarte | Unstabilized, _) => Kind::Drift,
-            _ if method.is_adaptive() => Kind::Adaptive,
-            _ => Kind::Equal,
+            MotionMethod::Implicit(_) => MethodKind::Implicit,
+            MotionMethod::Explicit(Penalty, _) => MethodKind::Soft,
+            MotionMethod::Explicit(_, IntegratorName::SemiImplicitEuler) => MethodKind::Euler,
+            MotionMethod::Explicit(Baumgarte | Unstabilized, _) => MethodKind::Drift,
+            _ if method.is_adaptive() => MethodKind::Adaptive,
+            _ => MethodKind::Equal,
         }
     }
 }

@@ -6,20 +6,20 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use super::description::{Description, Kind, When};
+use super::description::{Description, MethodKind, When};
 use super::{Case, cases, folder};
 
-fn kind(kind: Kind) -> &'static str {
+fn kind(kind: MethodKind) -> &'static str {
     match kind {
-        Kind::Adaptive => "adaptive steps at tolerance 1e-8",
-        Kind::Equal => "equal steps of order 4",
-        Kind::Euler => "equal steps of order 1",
-        Kind::Implicit => "implicit equal steps",
-        Kind::Drift => "Baumgarte, unstabilized",
-        Kind::Soft => "springs in place of rows",
-        Kind::Drives => "positions of drives",
-        Kind::Bounded => "steps of bounded work",
-        Kind::Single => "single precision",
+        MethodKind::Adaptive => "adaptive steps at tolerance 1e-8",
+        MethodKind::Equal => "equal steps of order 4",
+        MethodKind::Euler => "equal steps of order 1",
+        MethodKind::Implicit => "implicit equal steps",
+        MethodKind::Drift => "Baumgarte, unstabilized",
+        MethodKind::Soft => "springs in place of rows",
+        MethodKind::Drives => "positions of drives",
+        MethodKind::Bounded => "steps of bounded work",
+        MethodKind::Single => "single precision",
     }
 }
 

@@ -4,11 +4,11 @@ use core::f64::consts::TAU;
 
 use crate::erased::driven_variations::DrivenVariants;
 use crate::hard_cases::judge::{exceeds, of_driven};
-use crate::hard_cases::list::description::{Description, Kind, Samples};
+use crate::hard_cases::list::description::{Description, MethodKind, Samples};
 use crate::hard_cases::list::stored::Miss;
-use crate::hard_cases::oracle::{Gap, Oracle, State};
+use crate::hard_cases::oracle::{Gap, Oracle, OracleState};
 use crate::hard_cases::study::Extent;
-use crate::hard_cases::variation::{Class, Random, Subject, Variation};
+use crate::hard_cases::variation::{Class, Random, Variation, VariedParts};
 use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 use crate::setting::Numbers;
 
@@ -31,14 +31,14 @@ impl Encoder<'_> {
         &self,
         mechanism: &dyn DrivenVariants,
         oracle: &mut Oracle,
-        subject: &Subject,
+        subject: &VariedParts,
         extent: &Extent,
     ) -> Result<Vec<Outcome>, String> {
-        let subject = Subject { classes: vec![Class::Steps, Class::Single], ..subject.clone() };
+        let subject = VariedParts { classes: vec![Class::Steps, Class::Single], ..subject.clone() };
         let mut outcomes = Vec::new();
         for seed in &extent.seeds {
             let variation = Variation { finer: 1.0, ..Variation::of(*seed, &subject) };
-            let Some(bound) = self.case.bound(Kind::Drives, &variation) else { continue };
+            let Some(bound) = self.case.bound(MethodKind::Drives, &variation) else { continue };
             let samples = self.samples(oracle, extent.until, *seed).map_err(|Gap(reason)| reason)?;
             let words = format!(
                 "{} samples of {} bits, some lost, doubled or late",
@@ -95,7 +95,7 @@ impl Encoder<'_> {
     }
 
     /// Largest open row, and largest miss of a known value.
-    fn error(&self, state: &State, oracle: &Oracle, class: Class) -> Result<f64, Gap> {
+    fn error(&self, state: &OracleState, oracle: &Oracle, class: Class) -> Result<f64, Gap> {
         let known = self.case.worst(core::slice::from_ref(state), oracle, class)?;
         let known = known.map_or(0.0, |Miss { error, .. }| error);
         let rows = oracle.rows(state)?.into_iter().map(|row| row.phi.unwrap_or(0.0).abs());
@@ -111,7 +111,8 @@ impl Encoder<'_> {
         for k in 0..=(until * rate) as u32 {
             let t = f64::from(k) / rate;
             let zeros = vec![0.0; oracle.size()];
-            let state = State { t, q: zeros.clone(), qd: zeros.clone(), qdd: zeros, ..State::default() };
+            let state =
+                OracleState { t, q: zeros.clone(), qd: zeros.clone(), qdd: zeros, ..OracleState::default() };
             let asked = oracle.quantities(course, &state)?.first().map_or(f64::NAN, |found| found.value);
             let angle = step * (asked / step).round();
             let chance = random.between(0.0, 1.0);

@@ -3,8 +3,8 @@
 use mbs_runtime::Scalar;
 
 use crate::double_double::DoubleDouble;
-use crate::hard_cases::list::description::{Description, Kind, Known, When};
-use crate::hard_cases::oracle::{Gap, Oracle, Quantity, State};
+use crate::hard_cases::list::description::{Description, Known, MethodKind, When};
+use crate::hard_cases::oracle::{Gap, Oracle, OracleState, Quantity};
 use crate::hard_cases::variation::{Class, Variation};
 use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 
@@ -20,9 +20,10 @@ pub(super) struct Miss<'a> {
 
 impl Description {
     /// Bound of a kind of method in a variant: equal steps and tolerances are of order 4 and less.
-    pub fn bound(&self, kind: Kind, variation: &Variation) -> Option<f64> {
+    pub fn bound(&self, kind: MethodKind, variation: &Variation) -> Option<f64> {
         let own = self.bounds.get(&kind)?;
-        let single = if variation.class == Class::Single { self.bounds.get(&Kind::Single)? } else { &0.0 };
+        let single =
+            if variation.class == Class::Single { self.bounds.get(&MethodKind::Single)? } else { &0.0 };
         Some(own.max(*single) * variation.finer.min(1.0).powi(-4))
     }
 
@@ -30,9 +31,9 @@ impl Description {
     pub fn judged(
         &self,
         outcome: Outcome,
-        kind: Kind,
+        kind: MethodKind,
         variation: &Variation,
-        (states, oracle): (&[State], &Oracle),
+        (states, oracle): (&[OracleState], &Oracle),
     ) -> Outcome {
         let Some(bound) = self.bound(kind, variation) else { return outcome };
         if !matches!(outcome.verdict, Verdict::Right | Verdict::Late) {
@@ -65,7 +66,7 @@ impl Description {
     /// The known value that is missed by most.
     pub(super) fn worst(
         &self,
-        states: &[State],
+        states: &[OracleState],
         oracle: &Oracle,
         class: Class,
     ) -> Result<Option<Miss<'_>>, Gap> {

@@ -1,8 +1,8 @@
 use super::*;
-use crate::hard_cases::list::description::Kind;
-use crate::hard_cases::oracle::{Oracle, State};
+use crate::hard_cases::list::description::MethodKind;
+use crate::hard_cases::oracle::{Oracle, OracleState};
 use crate::hard_cases::similarity::Similarity;
-use crate::hard_cases::variation::{Class, Subject, Variation};
+use crate::hard_cases::variation::{Class, Variation, VariedParts};
 use crate::hard_cases::verdict::{Outcome, Verdict};
 
 const SPRING: &str = "mechanism Spring; coord x: m = 1; body bob { mass: 1, com: [x, 0] } \
@@ -34,15 +34,21 @@ fn outcome(verdict: Verdict, reason: &str) -> Outcome {
 }
 
 fn variation(finer: f64) -> Variation {
-    let subject = Subject { classes: vec![Class::Steps], ..Subject::default() };
+    let subject = VariedParts { classes: vec![Class::Steps], ..VariedParts::default() };
     Variation { finer, similarity: Similarity { power: 0 }, ..Variation::of(0, &subject) }
 }
 
 /// Exact states of the spring, `off` (m) beside it.
-fn states(off: f64) -> Vec<State> {
+fn states(off: f64) -> Vec<OracleState> {
     let state = |k: u32| {
         let t = 0.1 * f64::from(k);
-        State { t, q: vec![t.cos() + off], qd: vec![-t.sin()], qdd: vec![-t.cos()], ..State::default() }
+        OracleState {
+            t,
+            q: vec![t.cos() + off],
+            qd: vec![-t.sin()],
+            qdd: vec![-t.cos()],
+            ..OracleState::default()
+        }
     };
     (0..20).map(state).collect()
 }
@@ -50,7 +56,7 @@ fn states(off: f64) -> Vec<State> {
 fn judged(case: &Description, off: f64, finer: f64) -> Outcome {
     let oracle = Oracle::read(SPRING, None, &|_| None).expect("a text");
     let outcome = outcome(Verdict::Right, "");
-    case.judged(outcome, Kind::Adaptive, &variation(finer), (&states(off), &oracle))
+    case.judged(outcome, MethodKind::Adaptive, &variation(finer), (&states(off), &oracle))
 }
 
 #[test]
@@ -110,15 +116,15 @@ fn rates_and_exact_turns_are_known_values() {
     let mut late = states(0.0);
     late[7].qd[0] += 1e-5;
     let right = || outcome(Verdict::Right, "");
-    let found = rates.judged(right(), Kind::Adaptive, &variation(1.0), (&late, &oracle));
+    let found = rates.judged(right(), MethodKind::Adaptive, &variation(1.0), (&late, &oracle));
     assert_eq!(found.verdict, Verdict::Wrong, "{}", found.reason);
     // 1e6 rad/s after 1e3 s, in numbers of 50 digits: 1e9 rad is 0.577395423501385 rad behind whole turns.
     let turning = description("[[known]]\nvalue = 'x'\nturning = 1e6\nsource = 'exact product'");
     let at = |angle: f64| {
-        vec![State { t: 1e3, q: vec![angle], qd: vec![0.0], qdd: vec![0.0], ..State::default() }]
+        vec![OracleState { t: 1e3, q: vec![angle], qd: vec![0.0], qdd: vec![0.0], ..OracleState::default() }]
     };
     for (angle, expected) in [(0.577_395_423_501_385_2, Verdict::Right), (0.577_398, Verdict::Wrong)] {
-        let found = turning.judged(right(), Kind::Adaptive, &variation(1.0), (&at(angle), &oracle));
+        let found = turning.judged(right(), MethodKind::Adaptive, &variation(1.0), (&at(angle), &oracle));
         assert_eq!(found.verdict, expected, "{angle}: {}", found.reason);
     }
 }

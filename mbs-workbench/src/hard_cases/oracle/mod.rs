@@ -1,6 +1,6 @@
 //! An oracle of its own for a mechanism: the text itself, interpreted.
 //!
-//! Of the compiler of texts it uses the statements as they are written, nothing behind them: names, shapes, units, derivatives,
+//! Of the compiler of texts it uses the statements as they are written, nothing behind them. Names, shapes, units, derivatives,
 //! energies and forces are read and computed here. So no fault of resolving, differentiation, structure or emission is shared. It
 //! shares the reader of the language. A part of the language that it does not evaluate is a [`Gap`], which is told.
 
@@ -26,7 +26,7 @@ use self::evaluation::{Definition, Names, Scope, Value, joined, value};
 use self::functions::dot;
 use self::mechanics::mechanics;
 use self::number::{Dual, Number};
-pub use self::state::{Balance, Quantity, Row, State};
+pub use self::state::{Balance, OracleRow, OracleState, Quantity};
 use self::tree::{Placed, equations, unrolled};
 
 /// Direction of the first derivative.
@@ -126,7 +126,8 @@ impl Oracle {
         // A first look at a state without two equal numbers tells which bodies turn with coordinates, and how many rows there are.
         let count = oracle.states.iter().map(|(_, shape)| shape.iter().product::<usize>()).sum();
         let apart = |first: f64| (0..oracle.size()).map(|j| first + 0.017 * j as f64).collect::<Vec<_>>();
-        let state = State { q: apart(0.5), qd: apart(0.3), states: vec![0.0; count], ..State::default() };
+        let state =
+            OracleState { q: apart(0.5), qd: apart(0.3), states: vec![0.0; count], ..OracleState::default() };
         oracle.turning = oracle.turning_bodies(&oracle.names(&state, Along::Nothing), &state)?;
         let mut groups = Vec::new();
         oracle.each_row(&oracle.names(&state, Along::Nothing), &mut |group, rows, _| {
@@ -160,7 +161,7 @@ impl Oracle {
         self.groups.last().map_or(0, |(_, rows)| rows.end)
     }
 
-    fn names(&self, state: &State, along: Along<'_>) -> Names {
+    fn names(&self, state: &OracleState, along: Along<'_>) -> Names {
         let time = Dual { v: state.t, b: 1.0, ..Dual::default() };
         let mut names = Names {
             given: self.given.clone(),
@@ -203,7 +204,7 @@ impl Oracle {
     }
 
     /// Bodies whose orientation has coordinates among its components; of those with the same ones the first.
-    fn turning_bodies(&self, names: &Names, state: &State) -> Result<Vec<usize>, Gap> {
+    fn turning_bodies(&self, names: &Names, state: &OracleState) -> Result<Vec<usize>, Gap> {
         let mut known: Vec<Vec<Option<usize>>> = Vec::new();
         let mut bodies = Vec::new();
         for (index, placed) in self.placed.iter().enumerate() {
@@ -278,7 +279,7 @@ impl Oracle {
     ///
     /// # Errors
     /// The part of the rows that cannot be evaluated.
-    pub fn gradients(&self, state: &State, scales: &[f64]) -> Result<Vec<f64>, Gap> {
+    pub fn gradients(&self, state: &OracleState, scales: &[f64]) -> Result<Vec<f64>, Gap> {
         let mut gradients = vec![0.0; self.row_count()];
         for (j, scale) in scales.iter().enumerate() {
             let mut w = vec![0.0; scales.len()];
@@ -295,10 +296,10 @@ impl Oracle {
     ///
     /// # Errors
     /// The part of the rows that cannot be evaluated.
-    pub fn rows(&self, state: &State) -> Result<Vec<Row>, Gap> {
+    pub fn rows(&self, state: &OracleState) -> Result<Vec<OracleRow>, Gap> {
         let mut all = Vec::new();
         self.each_row(&self.names(state, Along::Nothing), &mut |_, _, found| {
-            let row = |(number, is_known): &(Number, bool)| Row {
+            let row = |(number, is_known): &(Number, bool)| OracleRow {
                 phi: is_known.then_some(number.value.v),
                 rate: number.rate.v,
                 second: number.rate.b,
@@ -312,7 +313,7 @@ impl Oracle {
     ///
     /// # Errors
     /// The part of the text that cannot be evaluated.
-    pub fn equations_of_motion(&self, state: &State, w: &[f64]) -> Result<Balance, Gap> {
+    pub fn equations_of_motion(&self, state: &OracleState, w: &[f64]) -> Result<Balance, Gap> {
         let (at, moving) = (self.names(state, Along::Positions(w)), self.names(state, Along::Velocities(w)));
         let (place, pace) = (mechanics(&self.placed, &at)?, mechanics(&self.placed, &moving)?);
         let mut balance = Balance::default();
@@ -336,7 +337,7 @@ impl Oracle {
     /// The part of the text that cannot be evaluated.
     pub fn rounding_of_equations(
         &self,
-        state: &State,
+        state: &OracleState,
         w: &[f64],
         (scales, digit): (&[f64], f64),
     ) -> Result<f64, Gap> {
@@ -366,7 +367,7 @@ impl Oracle {
     ///
     /// # Errors
     /// The part of the energies that cannot be evaluated.
-    pub fn energy(&self, state: &State) -> Result<[f64; 2], Gap> {
+    pub fn energy(&self, state: &OracleState) -> Result<[f64; 2], Gap> {
         let found = mechanics(&self.placed, &self.names(state, Along::Nothing))?;
         let all = found.kinetic.iter().chain(&found.potential);
         Ok(all.fold([0.0; 2], |[energy, rate], part| [energy + part.v, rate + part.b]))
@@ -376,7 +377,7 @@ impl Oracle {
     ///
     /// # Errors
     /// The part of a branch that cannot be evaluated.
-    pub fn branches(&self, state: &State) -> Result<Vec<(String, f64)>, Gap> {
+    pub fn branches(&self, state: &OracleState) -> Result<Vec<(String, f64)>, Gap> {
         let names = self.names(state, Along::Nothing);
         let mut found = Vec::new();
         for Placed { kind, rounds } in &self.placed {

@@ -4,7 +4,7 @@ use mbs_codegen::syntax_tree::StatementKind;
 
 use super::evaluation::{Gap, Scope, value};
 use super::number::Number;
-use super::state::{Quantity, State};
+use super::state::{OracleState, Quantity};
 use super::tree::Placed;
 use super::{Along, Oracle, components};
 
@@ -13,7 +13,7 @@ impl Oracle {
     ///
     /// # Errors
     /// There is none, or it cannot be evaluated.
-    pub fn quantities(&self, name: &str, state: &State) -> Result<Vec<Quantity>, Gap> {
+    pub fn quantities(&self, name: &str, state: &OracleState) -> Result<Vec<Quantity>, Gap> {
         let names = self.names(state, Along::Nothing);
         let mut found = Vec::new();
         let mut take = |own: &str, shape: &[usize], items: &[Number]| {

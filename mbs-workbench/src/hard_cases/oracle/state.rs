@@ -2,7 +2,7 @@
 
 /// A state of motion in the order of the text.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct State {
+pub struct OracleState {
     /// Time (s).
     pub t: f64,
     /// Coordinates: N.
@@ -19,7 +19,7 @@ pub struct State {
 
 /// A row with its time derivatives along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct OracleRow {
     /// Φ; none of a drive that prescribes a rate, whose phase the text does not tell.
     pub phi: Option<f64>,
     /// Φ̇.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::{Gap, Oracle, State};
+use super::{Gap, Oracle, OracleState};
 
 const PENDULUM: &str = "mechanism Pendulum; param L: m = 2; param mass: kg = 3; coord p: [m; 2]; \
     body bob { mass: mass, com: p } gravity weight { acceleration: [0, -10] } \
@@ -19,15 +19,15 @@ fn read(source: &str) -> Result<Oracle, Gap> {
 }
 
 /// The pendulum at its lowest point, with the speed `v`.
-fn lowest(v: f64) -> State {
+fn lowest(v: f64) -> OracleState {
     // a = v²/L upwards; the row's force is −2 p λ.
     let lambda = 3.0 * (10.0 + v * v / 2.0) / 4.0;
-    State {
+    OracleState {
         q: vec![0.0, -2.0],
         qd: vec![v, 0.0],
         qdd: vec![0.0, v * v / 2.0],
         lambda: vec![lambda],
-        ..State::default()
+        ..OracleState::default()
     }
 }
 
@@ -51,7 +51,7 @@ fn the_pendulum_has_its_closed_form() {
 #[test]
 fn a_fault_in_any_part_of_the_state_shows() {
     let oracle = read(PENDULUM).expect("a text");
-    let faulty = |change: fn(&mut State)| {
+    let faulty = |change: fn(&mut OracleState)| {
         let mut state = lowest(1.5);
         change(&mut state);
         let row = oracle.rows(&state).expect("rows")[0];
@@ -73,8 +73,12 @@ fn loops_effects_and_sums_are_read_in_the_order_of_the_text() {
         scene Up = up; scene Down = down;";
     let of = |scene| Oracle::read(source, scene, &|_| None).expect("a text");
     assert_eq!((of(None).row_count(), of(Some("Up")).row_count(), of(Some("Down")).row_count()), (6, 5, 3));
-    let state =
-        State { q: vec![0.1, 0.2, 0.3, 0.5], qd: vec![0.0; 4], qdd: vec![0.0; 4], ..State::default() };
+    let state = OracleState {
+        q: vec![0.1, 0.2, 0.3, 0.5],
+        qd: vec![0.0; 4],
+        qdd: vec![0.0; 4],
+        ..OracleState::default()
+    };
     let rows = of(Some("Up")).rows(&state).expect("rows");
     let phi: Vec<f64> = rows.iter().filter_map(|row| row.phi).collect();
     let expected = [0.1_f64.sin(), 2.0 * 0.2_f64.sin(), 3.0 * 0.3_f64.sin(), 0.5 - 0.2, 0.5 - 0.6];
@@ -128,9 +132,13 @@ fn the_last_digit_of_a_stiff_spring_is_rounding_and_a_wrong_force_is_not() {
     )
     .expect("a text");
     // The spring pulls `one` by 5 N and `other` by −5 N, as far as digits of metres have that stretch.
-    let state =
-        State { q: vec![1.0, 1.0 + 5e-9], qd: vec![0.3; 2], qdd: vec![5.0 - 10.0, -5.0], ..State::default() };
-    let open = |state: &State| {
+    let state = OracleState {
+        q: vec![1.0, 1.0 + 5e-9],
+        qd: vec![0.3; 2],
+        qdd: vec![5.0 - 10.0, -5.0],
+        ..OracleState::default()
+    };
+    let open = |state: &OracleState| {
         let w = [0.7, -0.9];
         let balance = oracle.equations_of_motion(state, &w).expect("a balance");
         let rounding =
@@ -139,7 +147,7 @@ fn the_last_digit_of_a_stiff_spring_is_rounding_and_a_wrong_force_is_not() {
     };
     let [as_it_is, without] = open(&state);
     assert!(as_it_is > 1e-9 && without == 0.0, "{as_it_is:e} {without:e}");
-    let wrong = State { qdd: vec![-5.001, -5.0], ..state };
+    let wrong = OracleState { qdd: vec![-5.001, -5.0], ..state };
     let [_, without] = open(&wrong);
     assert!(without > 1e-5, "{without:e}");
     assert!(!oracle.has_contacts());

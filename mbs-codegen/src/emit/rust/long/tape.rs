@@ -39,7 +39,7 @@ enum Input {
 
 /// One operation.
 struct Operation {
-    sign: u8,
+    opcode: u8,
     inputs: Vec<Input>,
     /// Values that it computes; of an angle sine and cosine.
     defines: Vec<Option<NodeId>>,
@@ -67,18 +67,18 @@ impl Tape {
             match statement.operands.as_slice() {
                 [Operand::Place(place), operand] => puts.push((input_of(operand), *place)),
                 _ => {
-                    for (sign, inputs, defines) in done(statement, scope) {
+                    for (opcode, inputs, defines) in done(statement, scope) {
                         let inputs: Vec<Input> = inputs.into_iter().map(|id| input(id, scope)).collect();
                         let level =
                             1 + inputs.iter().filter_map(|input| level(input, &levels)).max().unwrap_or(0);
                         levels.extend(defines.iter().flatten().map(|id| (*id, level)));
-                        operations.push(Operation { sign, inputs, defines, level });
+                        operations.push(Operation { opcode, inputs, defines, level });
                     }
                 }
             }
         }
         // A stable order: equal operations on neighbours remain neighbours.
-        operations.sort_by_key(|operation| (operation.level, operation.sign));
+        operations.sort_by_key(|operation| (operation.level, operation.opcode));
         Self::recorded(&operations, &puts, &levels)
     }
 
@@ -113,12 +113,12 @@ impl Tape {
                 Input::Number(bits) => tape.numbers.push(f64::from_bits(*bits)),
             }
         }
-        for alike in operations.chunk_by(|a, b| (a.level, a.sign) == (b.level, b.sign)) {
+        for alike in operations.chunk_by(|a, b| (a.level, a.opcode) == (b.level, b.opcode)) {
             let mut round = Vec::new();
             for input in alike.iter().flat_map(|operation| &operation.inputs) {
                 round.push(tape.number(input, &inputs));
             }
-            tape.runs.push((alike.first().map_or(0, |operation| operation.sign), round));
+            tape.runs.push((alike.first().map_or(0, |operation| operation.opcode), round));
             // Results are stored in columns.
             for column in 0..alike.first().map_or(0, |operation| operation.defines.len()) {
                 for operation in alike {
@@ -176,8 +176,8 @@ impl Tape {
         }
         run(b'#', 0, self.numbers.len(), &mut bytes);
         self.numbers.iter().for_each(|number| bytes.extend(number.to_le_bytes()));
-        for (sign, round) in &self.runs {
-            run(*sign, 0, round.len() / operands(*sign), &mut bytes);
+        for (opcode, round) in &self.runs {
+            run(*opcode, 0, round.len() / operands(*opcode), &mut bytes);
             round.iter().for_each(|number| bytes.extend(number.to_le_bytes()));
         }
         let passed = self.defines.iter().filter_map(|(id, number)| Some((*number, *slots.get(id)?)));
@@ -198,10 +198,10 @@ impl Tape {
 }
 
 /// The beginning of a run, if it has any rounds.
-fn run(sign: u8, array: usize, rounds: usize, bytes: &mut Vec<u8>) {
+fn run(opcode: u8, array: usize, rounds: usize, bytes: &mut Vec<u8>) {
     let number = |count: usize| u16::try_from(count).unwrap_or(u16::MAX).to_le_bytes();
     if rounds > 0 {
-        bytes.push(sign);
+        bytes.push(opcode);
         bytes.extend(number(array));
         bytes.extend(number(rounds));
     }
@@ -212,16 +212,16 @@ fn place(index: usize, bytes: &mut Vec<u8>) {
     bytes.extend(index.to_le_bytes().iter().take(3));
 }
 
-/// Number of operands of an operation with a sign.
-fn operands(sign: u8) -> usize {
-    match sign {
+/// Number of operands of an operation.
+fn operands(opcode: u8) -> usize {
+    match opcode {
         b'?' => 4,
         b'+' | b'-' | b'*' | b'/' | b'^' | b'2' | b'm' | b'M' | b'h' => 2,
         _ => 1,
     }
 }
 
-/// The operations of a statement: sign, operands, values computed.
+/// The operations of a statement: opcode, operands, values computed.
 fn done(statement: &Statement, scope: &Scope<'_>) -> Vec<(u8, Vec<NodeId>, Vec<Option<NodeId>>)> {
     let mut angles: BTreeMap<NodeId, Vec<Option<NodeId>>> = BTreeMap::new();
     let mut done = Vec::new();

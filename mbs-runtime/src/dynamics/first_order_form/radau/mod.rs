@@ -19,9 +19,9 @@ use crate::tolerances::motion;
 
 /// Radau IIA with three stages: order 5, L-stable, stiffly accurate, with an error estimate of order 3 and dense output of order 3.
 ///
-/// The equations of motion have index 1 in it: each stage solves M q̈ + Φ_qᵀ λ = Q, Φ_q q̈ = γ, and the formulation projects
+/// The equations of motion have index 1 in it: each stage solves M q̈ + Φ_qᵀ λ = Q, Φ_q q̈ = γ. The formulation projects
 /// positions and velocities at the end of the step. The stages are found by simplified Newton iterations on (q, q̇) and the
-/// first-order states: one real and one complex system of N unknowns a step, of the exact tangents about its start.
+/// first-order states. Each step has one real and one complex system of N unknowns, from the exact tangents about its start.
 /// If they do not converge, as across the kink of smoothed friction, the step is made smaller. A step of fixed size is then
 /// taken in parts, and its iteration ends at 1e-10 in the reference metric.
 ///
@@ -65,8 +65,8 @@ impl Radau5 {
     /// Most coordinates and rows together: the matrices of a step then take 1.5 MB of stack in double precision.
     pub const MOST_UNKNOWNS: usize = 120;
 
-    /// Bytes of stack for the matrices of a step, for a mechanism `S` of N coordinates and M rows: slopes of the
-    /// accelerations, the real and the complex factors.
+    /// Bytes of stack for the matrices of a step, for a mechanism `S` of N coordinates and M rows. They are the
+    /// slopes of the accelerations, the real and the complex factors.
     pub const fn stack<S, R, const N: usize, const M: usize>() -> usize
     where
         S: crate::mechanism::dynamic::Dynamic<R, N, M>,

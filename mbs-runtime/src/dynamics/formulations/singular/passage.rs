@@ -9,8 +9,8 @@ use crate::tolerances::singular;
 
 /// Time (s) at which a run came so near to a singular position that it may have passed it.
 ///
-/// After it the motion depends on the method: projection and velocity transformation go on as the momentum
-/// leads, Baumgarte's stabilisation and none may leave on another branch.
+/// After it the motion depends on the method. Projection and velocity transformation go on as the momentum
+/// leads; Baumgarte's stabilisation and `Unstabilized` may leave on another branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage<R> {
     /// Time (s) of the step's end that was nearest.

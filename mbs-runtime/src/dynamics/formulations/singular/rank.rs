@@ -1,9 +1,9 @@
 //! Rows that follow from others on the constraints alone.
 //!
 //! A row typed twice follows from its twin wherever the mechanism is. A row of a loop that closes against Grübler's count
-//! follows from the others only where the loop is closed: at a distance δ from the constraints it has a part of order δ of
-//! its own. Its γ there differs by order δ from that of the others in that direction, so that accelerations are wrong
-//! by their own size however small δ is, with every residual at rounding.
+//! follows from the others only where the loop is closed. At a distance δ from the constraints it has a part of order δ of
+//! its own. Its γ there differs by order δ from that of the others in that direction. So accelerations are wrong by their
+//! own size however small δ is, with every residual at rounding.
 
 use crate::dynamics::formulations::projection::project_position;
 use crate::dynamics::integrators::vector::IntegratorState;

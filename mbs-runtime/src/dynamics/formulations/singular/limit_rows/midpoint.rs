@@ -1,9 +1,9 @@
 //! Correction of first order to the limit of a row, at a time s from the singular position.
 //!
-//! νᵀΦ_q and νᵀγ are zero there, ν the combination that loses its hold there. Over s the row is the mean of its derivative on the way,
-//! rᵀq̈ + ∫(2 rᵀq̈ − c) ds/s = 0 with r = Φ̇_qᵀν and c = νᵀγ̇ of places on the way, and q̈ of the end in the first term. By the midpoint, with
-//! q̈ there the mean of both ends', that is 2 rᵀq̈ = c − rᵀq̈₀: r and c half way, q̈₀ that of the singular position, where the limit is
-//! exact. r is the direction of the reaction to the same order.
+//! νᵀΦ_q and νᵀγ are zero there, ν the combination that loses its hold there. Over s the row is the mean of its derivative on the way: rᵀq̈ +
+//! ∫(2 rᵀq̈ − c) ds/s = 0. There r = Φ̇_qᵀν and c = νᵀγ̇ are of places on the way, and q̈ in the first term is of the end. The midpoint rule,
+//! with q̈ there the mean of both ends, gives 2 rᵀq̈ = c − rᵀq̈₀. r and c are those half way, q̈₀ that of the singular position, where the
+//! limit is exact. r is the direction of the reaction to the same order.
 
 use crate::dynamics::formulations::singular::limit_rows::combinations::Weak;
 use crate::dynamics::formulations::singular::limit_rows::{system_at, zone};

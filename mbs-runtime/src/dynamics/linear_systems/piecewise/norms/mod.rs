@@ -1,8 +1,8 @@
 //! All solutions of several norms that do not contract: nᵢ = |cᵢ + Σ bᵢⱼ nⱼ|, isolated by division of a simplex.
 //!
-//! With a scale s > 0 the equations are homogeneous in x = (s, n): the simplex x ≥ 0, Σ x = 1 holds all solutions, however large.
-//! On a part of it Gᵢ = nᵢ − |wᵢ(x)| is concave: its corners bound it below, those of a tangent above. A part is done where some Gᵢ has
-//! no zero in it, or where a box around it has at most one solution and that one is found; others are halved.
+//! With a scale s > 0 the equations are homogeneous in x = (s, n): the simplex x ≥ 0, Σ x = 1 holds all solutions, however large. On a
+//! part of it Gᵢ = nᵢ − |wᵢ(x)| is concave: its corners bound it below, those of a tangent above. A part is done where some Gᵢ has no
+//! zero in it, or where the one solution that a box around it can have is found. Others are halved.
 //! Source: Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis, §§5.2, 8.1, 11.1; Rivara 1984 for the halved edge.
 
 #[cfg(test)]

@@ -1,0 +1,101 @@
+//! Suffixes after a dot in expressions: components, derivatives of declared functions, and method calls of other languages.
+
+use proc_macro2::Span;
+
+use super::ast::{Instruction, Operation};
+use super::expression::Reader;
+use super::foreign::{self, CALLED};
+use super::number::literal;
+use super::number_notations;
+use super::parser::{GivenUp, Parser, Read};
+use super::tokens::TokenKind;
+
+const DERIVATIVE: &str = "write `lift.d1(x)` or `lift.d2(x)` of a declared function; what rates need beyond is derived from the text";
+
+impl Reader {
+    /// Reads `.2` after a vector.
+    pub(super) fn component(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
+        let span = parser.span();
+        parser.skip(1);
+        if let TokenKind::Identifier(word) = parser.peek()
+            && *parser.peek_at(1) == TokenKind::Open('(')
+        {
+            return self.derivative(parser, word);
+        }
+        if let Some(Instruction { operation: Operation::Number { unit: None, .. }, .. }) = self.code.last()
+            && let Some(number) = number_notations::dot_without_digits(parser)
+            && let Some(last) = self.code.last_mut()
+        {
+            last.operation = number;
+            return Ok(Some(false));
+        }
+        if let TokenKind::Literal(text) = parser.peek()
+            && let Some(index) = literal(text, span)
+            && matches!(index, Operation::Number { integer: true, .. })
+        {
+            self.push(index, parser.span());
+            parser.skip(1);
+            self.push(Operation::Index { indices: 1 }, span);
+            return Ok(Some(false));
+        }
+        // Of `m.0.1` the two numbers are one token to Rust.
+        if let TokenKind::Literal(text) = parser.peek()
+            && let Some((row, column)) = text.split_once('.')
+            && let (Some(row), Some(column)) = (whole(row, span), whole(column, span))
+        {
+            for index in [row, column] {
+                self.push(index, parser.span());
+                self.push(Operation::Index { indices: 1 }, span);
+            }
+            parser.skip(1);
+            return Ok(Some(false));
+        }
+        parser.expected("the number of a component", "write `p.0` or `p[0]`; of a matrix `m[0, 1]`")
+    }
+
+    /// Reads `d1(…)` after a function's name and its dot.
+    fn derivative(&mut self, parser: &mut Parser<'_>, word: &str) -> Read<Option<bool>> {
+        let order = match word {
+            "d1" => 1,
+            "d2" => 2,
+            _ if CALLED.contains(&word) => return self.method(parser, word).map(Some),
+            _ => {
+                let message = format!("`{word}` is no derivative that a text can use");
+                parser.diagnostics.report(parser.span(), message, DERIVATIVE);
+                return Err(GivenUp);
+            }
+        };
+        let Some(Instruction { operation: Operation::Name(function), span }) = self.code.pop() else {
+            parser.diagnostics.report(parser.span(), "only a function has a derivative", DERIVATIVE);
+            return Err(GivenUp);
+        };
+        parser.skip(2);
+        Ok(Some(self.call(parser, function, order, span)))
+    }
+
+    /// Reads the call of `math.sin(…)` or `phi.sin()`, which is reported, as `sin(…)`.
+    fn method(&mut self, parser: &mut Parser<'_>, word: &str) -> Read<bool> {
+        let Some(Instruction { operation: Operation::Name(owner), span }) = self.code.pop() else {
+            parser.diagnostics.report(
+                parser.span(),
+                "functions do not follow a dot",
+                format!("write `{word}(…)`"),
+            );
+            return Err(GivenUp);
+        };
+        foreign::method(parser, &owner, word);
+        parser.skip(2);
+        if parser.take(')') {
+            self.push(Operation::Name(owner), span);
+            self.push(Operation::Call { function: word.into(), order: 0, arguments: 1 }, span);
+            return Ok(false);
+        }
+        Ok(self.call(parser, word.into(), 0, span))
+    }
+}
+
+/// The number that `digits` alone are.
+fn whole(digits: &str, span: Span) -> Option<Operation> {
+    let is_whole = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+    is_whole.then(|| literal(digits, span)).flatten()
+}

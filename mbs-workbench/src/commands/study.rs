@@ -1,0 +1,131 @@
+//! `mbs study`.
+
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use super::CommandError;
+use super::assignment::{Assignment, assignment};
+use super::chosen::{finite, write_file};
+use super::document::Output;
+use crate::card::Card;
+use crate::catalogue::Catalogue;
+use crate::output::origin::Origin;
+use crate::study::{Report, Study, Values, page};
+use crate::target_directory::target_directory;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Mechanism whose study is run [default: the studies are listed]
+    name: Option<String>,
+    /// Speed of the study in revolutions a minute: its parameter `speed`
+    #[arg(long, value_name = "RPM", value_parser = finite)]
+    speed: Option<f64>,
+    /// Set a parameter of the study, in its unit or with a unit of its own
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    param: Vec<Assignment>,
+    /// Folder of the page [default: mbs/study/NAME in cargo's target directory]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Runs a study: prints its tables and writes its page.
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+    let Some(name) = &arguments.name else { return list(catalogue, out) };
+    let (card, study) = found(catalogue, name)?;
+    let mut values = Values::of(study);
+    let usage = |error: crate::study::StudyError| CommandError::Usage(error.to_string());
+    for one in &arguments.param {
+        let unit =
+            study.parameters.iter().find(|known| known.name == one.name).map_or("1", |known| known.unit);
+        let value = match study.parameters.iter().any(|known| known.name == one.name) {
+            true => one.in_unit(unit)?,
+            // The study names what it knows.
+            false => 0.0,
+        };
+        values.set(&one.name, value).map_err(usage)?;
+    }
+    if let Some(speed) = arguments.speed {
+        values.set("speed", speed * core::f64::consts::PI / 30.0).map_err(usage)?;
+    }
+    let report = (study.run)(&values, &mut |step| {
+        // For a reader who waits.
+        if std::io::stderr().is_terminal() {
+            let _ = writeln!(std::io::stderr(), "{step} ...");
+        }
+    })
+    .map_err(|error| CommandError::Failed(error.to_string()))?;
+    let origin = Origin::of_text(&card.name(), card.equations().source());
+    let directory = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| target_directory().join("mbs").join("study").join(card.file_name()));
+    let path = directory.join("study.html");
+    write_file(&path, &page::html(&report, &command(arguments, name), &origin.line()))?;
+    out.put_text(&origin, &report.title, None);
+    out.put("sections", sections(&report));
+    out.put_file("page", &path);
+    print(out, &report)?;
+    writeln!(out, "\npage: {}", path.display())?;
+    Ok(())
+}
+
+/// The studies of all mechanisms with their parameters.
+fn list(catalogue: &Catalogue, out: &mut Output) -> Result<(), CommandError> {
+    for card in catalogue.iter() {
+        let Some(study) = card.study else { continue };
+        let name = card.name();
+        let parameters: Vec<_> = study
+            .parameters
+            .iter()
+            .map(|one| json!({ "name": one.name, "unit": one.unit, "value": one.value, "about": one.about }))
+            .collect();
+        out.push("studies", json!({ "name": name, "about": study.about, "parameters": parameters }));
+        writeln!(out, "mbs study {}: {}", name.split(':').next().unwrap_or(&name), study.about)?;
+        for one in study.parameters {
+            writeln!(out, "  {:<12} {} {}, {}", one.name, one.value, one.unit, one.about)?;
+        }
+    }
+    Ok(())
+}
+
+/// The card of this name, or of this text, that brings a study.
+fn found<'a>(catalogue: &Catalogue<'a>, name: &str) -> Result<(&'a Card, &'static Study), CommandError> {
+    let of_text = |card: &&Card| card.name().split(':').next() == Some(name) || card.name() == name;
+    let own = catalogue.cards.iter().filter(of_text).find_map(|card| Some((card, card.study?)));
+    own.ok_or_else(|| {
+        let known: Vec<String> =
+            catalogue.cards.iter().filter(|card| card.study.is_some()).map(Card::name).collect();
+        CommandError::Usage(format!("`{name}` brings no study; there are those of {}", known.join(", ")))
+    })
+}
+
+/// The line that makes the page again.
+fn command(arguments: &Arguments, name: &str) -> String {
+    let speed = arguments.speed.map(|speed| format!(" --speed {speed}")).unwrap_or_default();
+    let parameters: String =
+        arguments.param.iter().map(|one| format!(" --param {}", one.written())).collect();
+    format!("mbs study {name}{speed}{parameters}")
+}
+
+fn sections(report: &Report) -> Vec<serde_json::Value> {
+    let table = |table: &crate::study::Table| json!({ "head": table.head, "rows": table.rows });
+    let section = |section: &crate::study::Section| json!({ "title": section.title, "text": section.text, "tables": section.tables.iter().map(table).collect::<Vec<_>>() });
+    report.sections.iter().map(section).collect()
+}
+
+fn print(out: &mut Output, report: &Report) -> Result<(), CommandError> {
+    writeln!(out, "{}\n{}", report.title, report.sentence)?;
+    for (index, section) in report.sections.iter().enumerate() {
+        writeln!(out, "\n{}. {}", index + 1, section.title)?;
+        for paragraph in &section.text {
+            writeln!(out, "{paragraph}")?;
+        }
+        for line in section.tables.iter().flat_map(|table| table.lines()) {
+            writeln!(out, "  {line}")?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! The self-contained page of a study: a section a step, pictures as inline SVG, no script.
+
+use core::fmt::Write;
+
+use super::{Report, Section, Table};
+use crate::output::page::escaped;
+
+/// The page. `command`: the line that makes it; `origin`: program, version and text.
+pub fn html(report: &Report, command: &str, origin: &str) -> String {
+    let mut body = String::new();
+    for (index, section) in report.sections.iter().enumerate() {
+        write_section(&mut body, index + 1, section);
+    }
+    let links: String = report
+        .sections
+        .iter()
+        .enumerate()
+        .map(|(index, section)| {
+            format!("<a href=\"#step{}\">{}. {}</a>\n", index + 1, index + 1, escaped(&section.title))
+        })
+        .collect();
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"generator\" content=\"{}\">\n<title>{title}</title>\n<style>{}</style>\n</head>\n<body>\n\
+         <header><h1>{title}</h1><p class=\"lead\">{}</p><nav>{links}</nav></header>\n<main>\n{body}</main>\n\
+         <footer>Made by <code>{}</code> · {}</footer>\n</body>\n</html>\n",
+        escaped(origin),
+        include_str!("page.css"),
+        escaped(&report.sentence),
+        escaped(command),
+        escaped(origin),
+        title = escaped(&report.title),
+    )
+}
+
+fn write_section(body: &mut String, number: usize, section: &Section) {
+    let _ = writeln!(body, "<section id=\"step{number}\"><h2>{number}. {}</h2>", escaped(&section.title));
+    for paragraph in &section.text {
+        let _ = writeln!(body, "<p>{}</p>", escaped(paragraph));
+    }
+    for table in &section.tables {
+        write_table(body, table);
+    }
+    body.push_str("<div class=\"pictures\">\n");
+    for picture in &section.pictures {
+        let _ = writeln!(
+            body,
+            "<figure><figcaption>{}</figcaption><div class=\"scroll\">{}</div></figure>",
+            escaped(&picture.caption),
+            picture.svg
+        );
+    }
+    body.push_str("</div></section>\n");
+}
+
+fn write_table(body: &mut String, table: &Table) {
+    let row = |cells: &[String], tag: &str| -> String {
+        cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect()
+    };
+    let _ = write!(
+        body,
+        "<div class=\"scroll\"><table><thead><tr>{}</tr></thead><tbody>",
+        row(&table.head, "th")
+    );
+    for cells in &table.rows {
+        let _ = write!(body, "<tr>{}</tr>", row(cells, "td"));
+    }
+    body.push_str("</tbody></table></div>\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Picture;
+    use super::*;
+
+    #[test]
+    fn a_page_has_all_steps_and_refers_to_nothing_outside() {
+        let mut table = Table::new(["a", "b"]);
+        table.push(["1 < 2".to_string(), "3".to_string()]);
+        let section = Section {
+            title: "Synthesis".to_string(),
+            text: vec!["Both cams.".to_string()],
+            tables: vec![table],
+            pictures: vec![Picture { caption: "Lift".to_string(), svg: "<svg></svg>".to_string() }],
+        };
+        let report = Report {
+            title: "A study".to_string(),
+            sentence: "It ran.".to_string(),
+            sections: vec![section.clone(), Section { title: "Motion".to_string(), ..section }],
+        };
+        let page = html(&report, "mbs study a", "mbs 0.1.0, a, text 0");
+        for part in ["1. Synthesis", "2. Motion", "1 &lt; 2", "<svg></svg>", "mbs study a", "#step2"] {
+            assert!(page.contains(part), "{part}");
+        }
+        assert!(!page.contains("http") && !page.contains("<script"));
+    }
+}

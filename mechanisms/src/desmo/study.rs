@@ -1,0 +1,156 @@
+//! The study of the valvetrain: synthesis, kinematic check, rigid dynamics at two speeds, sensitivity, cost of accuracy.
+
+mod chain;
+mod pictures;
+
+use core::f64::consts::PI;
+
+use mbs_workbench::cams::follower::{Cam, Direction};
+use mbs_workbench::study::{Parameter, Report, Study, StudyError, Values};
+
+use super::Design;
+use super::design::Curve;
+use super::motion::{Turn, Valvetrain};
+
+/// `mbs study desmo`.
+pub const STUDY: Study = Study {
+    about: "a desmodromic valvetrain from the lift law to the contact forces at two speeds",
+    parameters: &[
+        parameter("speed", "rad/s", 9000.0 * PI / 30.0, "speed of the cam"),
+        parameter("slow", "rad/s", 5000.0 * PI / 30.0, "the other speed"),
+        parameter("lift", "m", 0.011, "lift of the valve"),
+        parameter("duration", "rad", 160.0 * PI / 180.0, "cam angle from seat to seat"),
+        parameter("sense", "1", 1.0, "1 for cams that turn counter-clockwise, else -1"),
+        parameter("open_play", "m", 1e-4, "clearance between opener and valve"),
+        parameter("close_play", "m", 3e-5, "clearance between closer and valve"),
+        parameter("stiffness", "N/m", 5e10, "K of the contacts, in N/m^1.5"),
+        parameter("damping", "s/m", 1.5, "D of the contacts"),
+        parameter("valve_mass", "kg", 0.028, "mass of the valve"),
+        parameter("opener_inertia", "kg*m^2", 1.3e-5, "moment of inertia about the pivot"),
+        parameter("closer_inertia", "kg*m^2", 2.2e-5, "moment of inertia about the pivot"),
+        parameter("preload", "N*m", 1.2, "torque of the helper spring at lift 0"),
+        parameter("drag", "N*s/m", 2.0, "viscous friction of the guide"),
+        parameter("dry", "N", 3.0, "dry friction of the guide"),
+        parameter("swing", "rad", 0.0, "amplitude of a harmonic of the cam's angle"),
+        parameter("points", "1", 0.0, "points of the cams' tables; 0 for pitch curves in closed form"),
+        parameter("turns", "1", 3.0, "turns from rest; the last one is shown"),
+        parameter("runs", "1", 32.0, "perturbed runs of the envelope"),
+        parameter("spread", "1", 0.2, "half the width of the perturbations of K, D and clearances"),
+    ],
+    run: study,
+};
+
+const fn parameter(name: &'static str, unit: &'static str, value: f64, about: &'static str) -> Parameter {
+    Parameter { name, unit, value, about }
+}
+
+/// Values of a study, both cams, and the valvetrain without speed.
+struct Chain<'a> {
+    values: &'a Values,
+    design: Design,
+    cams: [Cam; 2],
+    curves: [Curve; 2],
+}
+
+/// Play, speed and factors of K, D and the clearances of a run.
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    speed: f64,
+    factors: [f64; 3],
+    tolerance: f64,
+}
+
+fn failed(error: impl core::fmt::Display) -> StudyError {
+    StudyError(error.to_string())
+}
+
+impl<'a> Chain<'a> {
+    fn of(values: &'a Values) -> Result<Self, StudyError> {
+        let direction = match values.get("sense") {
+            sense if sense > 0.0 => Direction::CounterClockwise,
+            _ => Direction::Clockwise,
+        };
+        for name in ["speed", "slow", "turns", "runs", "duration"] {
+            if values.get(name) <= 0.0 {
+                return Err(StudyError(format!("`{name}` must be above 0")));
+            }
+        }
+        let law = Design::law(values.get("lift"), values.get("duration")).map_err(failed)?;
+        let design = Design::ready(law, direction);
+        let cams = design.cams().map_err(failed)?;
+        let mut curves = design.curves().map_err(failed)?;
+        match values.get("points") {
+            0.0 => {}
+            points if points >= 16.0 => curves = tables(&curves, points as u32)?,
+            _ => return Err(StudyError("`points` is 0 or at least 16".to_string())),
+        }
+        Ok(Chain { values, design, cams, curves })
+    }
+
+    /// The valvetrain of a case on these pitch curves.
+    fn valvetrain(&self, [opening, shutting]: &[Curve; 2], case: &Case) -> Valvetrain {
+        let value = |name| self.values.get(name);
+        let [hardness, damping, play] = case.factors;
+        let mut valvetrain: Valvetrain = self.design.moved_by(opening.clone(), shutting.clone()).scene();
+        valvetrain.speed = case.speed;
+        valvetrain.open_play = play * value("open_play");
+        valvetrain.close_play = play * value("close_play");
+        valvetrain.stiffness = hardness * value("stiffness");
+        valvetrain.damping = damping * value("damping");
+        valvetrain.valve_mass = value("valve_mass");
+        valvetrain.opener_inertia = value("opener_inertia");
+        valvetrain.closer_inertia = value("closer_inertia");
+        valvetrain.preload = value("preload");
+        valvetrain.drag = value("drag");
+        valvetrain.dry = value("dry");
+        valvetrain.swing = value("swing");
+        valvetrain
+    }
+
+    /// The last turn of a case.
+    fn turn(&self, case: &Case) -> Result<Turn, StudyError> {
+        self.turn_on(&self.curves, case)
+    }
+
+    fn turn_on(&self, curves: &[Curve; 2], case: &Case) -> Result<Turn, StudyError> {
+        let turns = self.values.get("turns") as u32;
+        Turn::of(&self.valvetrain(curves, case), turns.max(1), SAMPLES, case.tolerance).map_err(failed)
+    }
+}
+
+/// Cam angles of a turn that are shown.
+const SAMPLES: u32 = 1440;
+
+/// Tolerance of the runs that are shown; the study of accuracy says what it is worth.
+const TOLERANCE: f64 = 1e-10;
+
+/// The case of the values at this speed, with play or without.
+fn case(speed: f64, has_play: bool) -> Case {
+    Case { speed, factors: [1.0, 1.0, if has_play { 1.0 } else { 0.0 }], tolerance: TOLERANCE }
+}
+
+fn tables([opening, shutting]: &[Curve; 2], points: u32) -> Result<[Curve; 2], StudyError> {
+    Ok([opening.table(points).map_err(failed)?, shutting.table(points).map_err(failed)?])
+}
+
+fn study(values: &Values, say: &mut dyn FnMut(&str)) -> Result<Report, StudyError> {
+    let chain = Chain::of(values)?;
+    say("synthesis");
+    let mut sections = vec![chain::synthesis(&chain)?];
+    say("kinematic check");
+    sections.push(chain::kinematics(&chain)?);
+    let mut sentence = String::new();
+    for speed in [values.get("slow"), values.get("speed")] {
+        say(&format!("motion at {:.0} 1/min", speed * 30.0 / PI));
+        let (section, said) = chain::dynamics(&chain, speed)?;
+        sections.push(section);
+        sentence = said;
+    }
+    say("sensitivity");
+    sections.push(chain::sensitivity(&chain)?);
+    say("envelope");
+    sections.push(chain::envelope(&chain)?);
+    say("accuracy");
+    sections.push(chain::accuracy(&chain)?);
+    Ok(Report { title: "Desmodromic valvetrain of rigid bodies".to_string(), sentence, sections })
+}

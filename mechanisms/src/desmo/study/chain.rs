@@ -1,0 +1,321 @@
+//! Steps of the study.
+
+use core::f64::consts::{PI, TAU};
+
+use mbs_runtime::Stepper;
+use mbs_workbench::cams::limits::{Limits, examine};
+use mbs_workbench::cams::noise;
+use mbs_workbench::study::{Section, StudyError, Table};
+
+use super::super::design::Curve;
+use super::super::motion::{FORCES, Turn};
+use super::{Case, Chain, TOLERANCE, case, failed, pictures, tables};
+
+fn revolutions(speed: f64) -> f64 {
+    speed * 30.0 / PI
+}
+
+/// Both cams from the law: sizes, curvature, pressure angle.
+pub fn synthesis(chain: &Chain) -> Result<Section, StudyError> {
+    let mut table = Table::new([
+        "cam",
+        "radii (mm)",
+        "least convex R (mm)",
+        "hollow R (mm)",
+        "pressure angle (deg)",
+        "sliding (mm/rad)",
+        "undercut",
+    ]);
+    for (name, cam) in ["opening", "closing"].into_iter().zip(&chain.cams) {
+        let (mut near, mut far) = (f64::INFINITY, 0.0_f64);
+        let (mut convex, mut hollow, mut pressure, mut sliding) =
+            (f64::INFINITY, f64::INFINITY, 0.0_f64, 0.0_f64);
+        for k in 0..1440 {
+            let place = cam.place(TAU * f64::from(k) / 1440.0 - PI);
+            let radius = place.contour[0].hypot(place.contour[1]);
+            (near, far) = (near.min(radius), far.max(radius));
+            match place.radius > 0.0 {
+                true => convex = convex.min(place.radius),
+                false => hollow = hollow.min(-place.radius),
+            }
+            pressure = pressure.max(place.pressure.abs());
+            sliding = sliding.max(place.sliding.abs());
+        }
+        let is_whole = examine(cam, &Limits::default()).iter().all(|verdict| verdict.kept);
+        table.push([
+            name.to_string(),
+            format!("{:.3} to {:.3}", 1e3 * near, 1e3 * far),
+            format!("{:.3}", 1e3 * convex),
+            if hollow.is_finite() { format!("{:.2}", 1e3 * hollow) } else { "-".to_string() },
+            format!("{:.2}", pressure.to_degrees()),
+            format!("{:.2}", 1e3 * sliding),
+            if is_whole { "none" } else { "yes" }.to_string(),
+        ]);
+    }
+    Ok(Section {
+        title: "Synthesis of both cams".to_string(),
+        text: vec!["Closed forms from the lift law to both pitch curves and contours; derivatives are exact. A hollow flank needs a smaller grinding wheel than its R.".to_string()],
+        tables: vec![table],
+        pictures: vec![pictures::moving(chain)?, pictures::law(chain)],
+    })
+}
+
+/// Largest errors of lift, velocity and acceleration (m over rad), and how far the rockers' distance varies (m).
+fn errors(chain: &Chain, [opening, shutting]: &[Curve; 2]) -> Result<[f64; 4], StudyError> {
+    let mut mechanism = chain.design.moved_by(opening.clone(), shutting.clone());
+    mechanism.speed = 1.0;
+    let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0).map_err(failed)?;
+    let (mut errors, mut least, mut most) = ([0.0_f64; 3], f64::INFINITY, f64::NEG_INFINITY);
+    // Places beside the points of every table.
+    for step in 0..720 {
+        let t = TAU * (f64::from(step) + 0.37) / 720.0;
+        stepper.advance_to(t).map_err(failed)?;
+        let outputs = stepper.outputs();
+        let [apart, lift] = [outputs.as_ref()[0], outputs.as_ref()[1]];
+        (least, most) = (least.min(apart.value), most.max(apart.value));
+        let found = [Some(lift.value), lift.rate, lift.acceleration];
+        for (error, (found, law)) in
+            errors.iter_mut().zip(found.into_iter().zip(chain.design.law.jet(t - PI)))
+        {
+            *error = error.max((found.unwrap_or(f64::NAN) - law).abs());
+        }
+    }
+    Ok([errors[0], errors[1], errors[2], most - least])
+}
+
+/// Permanent contact against the law, with tables of the cams and with noise in a table of the lift.
+pub fn kinematics(chain: &Chain) -> Result<Section, StudyError> {
+    let mut table = Table::new([
+        "pitch curves",
+        "lift (m)",
+        "velocity (m/rad)",
+        "acceleration (m/rad²)",
+        "rockers' distance, peak to peak (m)",
+    ]);
+    let exact = chain.design.curves().map_err(failed)?;
+    let mut row = |name: String, curves: &[Curve; 2]| -> Result<(), StudyError> {
+        let found = errors(chain, curves)?.map(|error| format!("{error:.1e}"));
+        let [lift, velocity, acceleration, apart] = found;
+        table.push([name, lift, velocity, acceleration, apart]);
+        Ok(())
+    };
+    row("closed form".to_string(), &exact)?;
+    for points in [90, 180, 360, 720, 1440] {
+        row(format!("quintic spline, {points} points"), &tables(&exact, points)?)?;
+    }
+    let mut noisy = Table::new([
+        "points a turn",
+        "noise of the acceleration (mm/rad²)",
+        "√3 q N²/4π²",
+        "least-squares fit, 60 knots",
+    ]);
+    let study = noise::study(&chain.design.law, 1e-6).map_err(failed)?;
+    for one in &study.rows {
+        let fitted = one.fitted[2].map_or("-".to_string(), |error| format!("{:.4}", 1e3 * error));
+        noisy.push([
+            one.points.to_string(),
+            format!("{:.4}", 1e3 * one.through),
+            format!("{:.4}", 1e3 * one.expected),
+            fitted,
+        ]);
+    }
+    Ok(Section {
+        title: "Kinematic check".to_string(),
+        text: vec![
+            "No play, permanent contact: largest differences from the law over a turn, with the pitch curves in closed form and as tables.".to_string(),
+            "Second table: uniform noise of 1 µm in a table of the lift. More points make a spline through all of them worse; fewer knots keep the noise out.".to_string(),
+        ],
+        tables: vec![table, noisy],
+        pictures: Vec::new(),
+    })
+}
+
+fn row(name: String, turn: &Turn) -> [String; 9] {
+    let force = |force: usize| format!("{:.0}", turn.peak(force));
+    let torque = turn.torque.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    [
+        name,
+        format!("{:.1}", 1e-3 * turn.hardest()),
+        force(0),
+        force(1),
+        force(2),
+        force(3),
+        force(4),
+        format!("{torque:.1}"),
+        format!("{:.1}", 100.0 * turn.in_flight()),
+    ]
+}
+
+fn peaks(first: &str) -> Table {
+    let [opener, tip, seat, closer, fork] = FORCES.map(|name| format!("{name} (N)"));
+    Table::new([
+        first,
+        "valve (km/s²)",
+        &opener,
+        &tip,
+        &seat,
+        &closer,
+        &fork,
+        "torque (N m)",
+        "in flight (%)",
+    ])
+}
+
+/// Rigid dynamics at a speed, without and with play; the second part is the result in a sentence.
+pub fn dynamics(chain: &Chain, speed: f64) -> Result<(Section, String), StudyError> {
+    let [tight, loose] = [false, true].map(|has_play| chain.turn(&case(speed, has_play)));
+    let (tight, loose) = (tight?, loose?);
+    let law = (0..1440).fold(0.0, |most: f64, k| {
+        most.max(chain.design.law.jet::<f64>(f64::from(k).to_radians() / 4.0 - PI)[2].abs() * speed * speed)
+    });
+    let mut table = peaks("last turn, largest values");
+    table.push(row("no play".to_string(), &tight));
+    table.push(row("with play".to_string(), &loose));
+    let said = format!(
+        "At {:.0} 1/min the law asks for {:.1} km/s²; the valve has {:.1} km/s² without play and {:.1} km/s² with it, and the opener's cam bears {:.0} N and {:.0} N.",
+        revolutions(speed),
+        1e-3 * law,
+        1e-3 * tight.hardest(),
+        1e-3 * loose.hardest(),
+        tight.peak(0),
+        loose.peak(0),
+    );
+    let balance = format!(
+        "Work of the cams since the start: {:.4} J without play, {:.4} J with it; energy, contacts and guide account for it to {:.0e} and {:.0e} of the work.",
+        tight.work, loose.work, tight.defect, loose.defect
+    );
+    let section = Section {
+        title: format!("Rigid dynamics at {:.0} 1/min", revolutions(speed)),
+        text: vec![said.clone(), balance],
+        tables: vec![table],
+        pictures: vec![
+            pictures::accelerations(chain, speed, &tight, &loose),
+            pictures::torques(&tight, &loose),
+            pictures::forces("Contact forces without play", &tight),
+            pictures::forces("Contact forces with play", &loose),
+        ],
+    };
+    Ok((section, said))
+}
+
+/// Stiffness, damping, play and points of tables.
+pub fn sensitivity(chain: &Chain) -> Result<Section, StudyError> {
+    let speed = chain.values.get("speed");
+    let base = case(speed, true);
+    let mut table = peaks("change");
+    let variants = [
+        ("none", [1.0, 1.0, 1.0]),
+        ("K/2", [0.5, 1.0, 1.0]),
+        ("2 K", [2.0, 1.0, 1.0]),
+        ("D/2", [1.0, 0.5, 1.0]),
+        ("2 D", [1.0, 2.0, 1.0]),
+        ("play/2", [1.0, 1.0, 0.5]),
+        ("2 play", [1.0, 1.0, 2.0]),
+    ];
+    for (name, factors) in variants {
+        table.push(row(name.to_string(), &chain.turn(&Case { factors, ..base })?));
+    }
+    let exact = chain.design.curves().map_err(failed)?;
+    for points in [180, 720] {
+        let turn = chain.turn_on(&tables(&exact, points)?, &base)?;
+        table.push(row(format!("cams of {points} points"), &turn));
+    }
+    Ok(Section {
+        title: format!("Sensitivity at {:.0} 1/min with play", revolutions(speed)),
+        text: vec!["One number changed at a time. Impacts follow each other, so a small change shifts later ones: see the envelope before a difference is read as a trend.".to_string()],
+        tables: vec![table],
+        pictures: Vec::new(),
+    })
+}
+
+/// Number in [0, 1) of a sequence that fills the cube evenly. Source: Roberts 2018, the R3 sequence.
+fn spread(run: u32, axis: i32) -> f64 {
+    const GOLDEN: f64 = 1.220_744_084_605_759_5;
+    (0.5 + f64::from(run) * GOLDEN.powi(-axis)).fract()
+}
+
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(sorted.len() - 1);
+    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+}
+
+fn quantiles(mut values: Vec<f64>) -> [f64; 3] {
+    values.sort_by(f64::total_cmp);
+    [0.05, 0.5, 0.95].map(|share| quantile(&values, share))
+}
+
+/// Median and 5 to 95 % of perturbed runs.
+pub fn envelope(chain: &Chain) -> Result<Section, StudyError> {
+    let (speed, width) = (chain.values.get("speed"), chain.values.get("spread"));
+    let runs = chain.values.get("runs") as u32;
+    let mut turns = Vec::new();
+    for run in 0..runs.max(1) {
+        let factors = [1, 2, 3].map(|axis| 1.0 + width * (2.0 * spread(run, axis) - 1.0));
+        turns.push(chain.turn(&Case { factors, tolerance: 1e-9, ..case(speed, true) })?);
+    }
+    let angle = turns[0].angle.clone();
+    let at = |k: usize| quantiles(turns.iter().map(|turn| turn.acceleration[k]).collect());
+    let found: Vec<[f64; 3]> = (0..angle.len()).map(at).collect();
+    let mut table = Table::new(["largest value of a turn", "5 %", "median", "95 %", "95 % over 5 %"]);
+    let mut line = |name: String, values: Vec<f64>| {
+        let [low, median, high] = quantiles(values);
+        table.push([
+            name,
+            format!("{low:.1}"),
+            format!("{median:.1}"),
+            format!("{high:.1}"),
+            format!("{:.2}", high / low),
+        ]);
+    };
+    line("valve (km/s²)".to_string(), turns.iter().map(|turn| 1e-3 * turn.hardest()).collect());
+    for (force, name) in FORCES.iter().enumerate() {
+        line(format!("{name} (N)"), turns.iter().map(|turn| turn.peak(force)).collect());
+    }
+    Ok(Section {
+        title: format!("Envelope of {} runs at {:.0} 1/min", turns.len(), revolutions(speed)),
+        text: vec![format!(
+            "K, D and both clearances vary by ±{:.0} %, evenly spread. Peaks of a motion full of impacts are a distribution.",
+            100.0 * width
+        )],
+        tables: vec![table],
+        pictures: vec![pictures::envelope(&angle, &found)],
+    })
+}
+
+/// Errors of the lift and time over the tolerance, without play.
+pub fn accuracy(chain: &Chain) -> Result<Section, StudyError> {
+    let speed = chain.values.get("speed");
+    let turn = |tolerance: f64| {
+        let valvetrain = chain.valvetrain(&chain.curves, &Case { tolerance, ..case(speed, false) });
+        Turn::of(&valvetrain, 1, 720, tolerance).map_err(failed)
+    };
+    let exact = turn(1e-12)?;
+    let mut table = Table::new([
+        "tolerance",
+        "right-hand sides",
+        "time (ms)",
+        "error of the lift (m)",
+        "energy unaccounted for",
+    ]);
+    let mut points = Vec::new();
+    for tolerance in [1e-6, 1e-7, 1e-8, 1e-9, TOLERANCE, 1e-11] {
+        let found = turn(tolerance)?;
+        let error = found.lift.iter().zip(&exact.lift).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        points.push([found.evaluations as f64, error.max(1e-18)]);
+        table.push([
+            format!("{tolerance:.0e}"),
+            found.evaluations.to_string(),
+            format!("{:.1}", 1e3 * found.time.as_secs_f64()),
+            format!("{error:.1e}"),
+            format!("{:.1e}", found.defect),
+        ]);
+    }
+    Ok(Section {
+        title: format!("Cost of accuracy at {:.0} 1/min", revolutions(speed)),
+        text: vec!["The first turn without play by Dormand and Prince's method of order 8, against a tolerance of 1e-12. Times contain 720 instants that are shown.".to_string()],
+        tables: vec![table],
+        pictures: vec![pictures::costs(&points)],
+    })
+}

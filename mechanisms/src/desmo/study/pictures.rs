@@ -1,0 +1,128 @@
+//! Plots of the study, and the moving picture.
+
+use core::f64::consts::TAU;
+
+use mbs_workbench::output::animation::animation;
+use mbs_workbench::output::places::places;
+use mbs_workbench::output::shapes::shapes;
+use mbs_workbench::study::plot::{Curve as Line, Plot};
+use mbs_workbench::study::{Picture, StudyError};
+
+use super::super::motion::{FORCES, Turn};
+use super::super::{CARD, DesmoKinematic};
+use super::{Chain, failed};
+
+const ANGLE: &str = "cam angle (deg)";
+
+/// Both cams, rockers and valve over a turn.
+pub fn moving(chain: &Chain) -> Result<Picture, StudyError> {
+    let [opening, shutting] = chain.curves.clone();
+    let mut mechanism: DesmoKinematic<_, _> = chain.design.moved_by(opening, shutting);
+    mechanism.speed = TAU / 6.0;
+    mechanism.opener_radius = chain.design.opener.radius;
+    mechanism.closer_radius = chain.design.closer.radius;
+    let mechanism = mbs_workbench::erased::erase::erase(mechanism).into_mechanism();
+    let mechanism = mechanism.ok_or_else(|| StudyError("the cams leave the valve free".to_string()))?;
+    let motion = mbs_workbench::catalogue::sweep(mechanism.as_ref(), 6.0, 180).map_err(failed)?;
+    let picture = CARD.picture().map_err(failed)?;
+    let places = places(&picture, mechanism.as_ref(), &motion, None);
+    let svg = animation(&shapes(&picture.shapes), &motion, &places).map_err(StudyError)?;
+    Ok(Picture { caption: "Both cams, rockers and valve, a turn in six seconds".to_string(), svg })
+}
+
+/// Lift with its derivatives over the cam angle, each over its largest magnitude.
+pub fn law(chain: &Chain) -> Picture {
+    let angles: Vec<f64> = (0..=720).map(|k| f64::from(k) / 2.0 - 180.0).collect();
+    let jets: Vec<[f64; 4]> = angles.iter().map(|angle| chain.design.law.jet(angle.to_radians())).collect();
+    let curve = |order: usize, name: &str, unit: &str| {
+        let most = jets.iter().fold(0.0, |most: f64, jet| most.max(jet[order].abs()));
+        let values: Vec<f64> = jets.iter().map(|jet| jet[order] / most).collect();
+        Line::new(&format!("{name}, 1 is {:.4} {unit}", 1e3 * most), &angles, &values)
+    };
+    let plot = Plot {
+        caption: "Lift law".to_string(),
+        x: ANGLE.to_string(),
+        y: "over the largest magnitude".to_string(),
+        curves: vec![curve(0, "s", "mm"), curve(1, "s'", "mm/rad"), curve(2, "s''", "mm/rad²")],
+        ..Plot::default()
+    };
+    plot.picture()
+}
+
+/// Acceleration of the valve with and without play over that of the law.
+pub fn accelerations(chain: &Chain, speed: f64, tight: &Turn, loose: &Turn) -> Picture {
+    let law = |angle: &f64| chain.design.law.jet::<f64>(angle.to_radians())[2] * speed * speed * 1e-3;
+    let scaled = |turn: &Turn| turn.acceleration.iter().map(|a| 1e-3 * a).collect::<Vec<_>>();
+    let plot = Plot {
+        caption: "Acceleration of the valve".to_string(),
+        x: ANGLE.to_string(),
+        y: "acceleration (km/s²)".to_string(),
+        curves: vec![
+            Line::new("with play", &loose.angle, &scaled(loose)),
+            Line::new("no play", &tight.angle, &scaled(tight)),
+            Line::new("law", &loose.angle, &loose.angle.iter().map(law).collect::<Vec<_>>()).dashed(),
+        ],
+        ..Plot::default()
+    };
+    plot.picture()
+}
+
+/// Contact forces of a turn, and where the valve flies.
+pub fn forces(caption: &str, turn: &Turn) -> Picture {
+    let curve = |force: usize| {
+        let values: Vec<f64> = turn.forces[force].iter().map(|value| 1e-3 * value).collect();
+        Line::new(FORCES[force], &turn.angle, &values)
+    };
+    let plot = Plot {
+        caption: caption.to_string(),
+        x: ANGLE.to_string(),
+        y: "contact force (kN)".to_string(),
+        curves: [0, 3, 2].map(curve).to_vec(),
+        marks: Some(("valve touches nothing".to_string(), turn.flights())),
+        ..Plot::default()
+    };
+    plot.picture()
+}
+
+/// Torque of the cams.
+pub fn torques(tight: &Turn, loose: &Turn) -> Picture {
+    let plot = Plot {
+        caption: "Torque that the cams need".to_string(),
+        x: ANGLE.to_string(),
+        y: "torque (N m)".to_string(),
+        curves: vec![
+            Line::new("with play", &loose.angle, &loose.torque),
+            Line::new("no play", &tight.angle, &tight.torque),
+        ],
+        ..Plot::default()
+    };
+    plot.picture()
+}
+
+/// Median and range of the acceleration over perturbed runs.
+pub fn envelope(angle: &[f64], quantiles: &[[f64; 3]]) -> Picture {
+    let band = angle.iter().zip(quantiles).map(|(angle, [low, _, high])| [*angle, 1e-3 * low, 1e-3 * high]);
+    let median: Vec<f64> = quantiles.iter().map(|[_, median, _]| 1e-3 * median).collect();
+    let plot = Plot {
+        caption: "Acceleration of the valve over all perturbed runs".to_string(),
+        x: ANGLE.to_string(),
+        y: "acceleration (km/s²)".to_string(),
+        bands: vec![("5 to 95 % of the runs".to_string(), band.collect())],
+        curves: vec![Line::new("median", angle, &median)],
+        ..Plot::default()
+    };
+    plot.picture()
+}
+
+/// Errors over evaluations, both as logarithms.
+pub fn costs(points: &[[f64; 2]]) -> Picture {
+    let [x, y] = [0, 1].map(|axis| points.iter().map(|point| point[axis].log10()).collect::<Vec<_>>());
+    let plot = Plot {
+        caption: "Error of the lift over right-hand sides of a turn".to_string(),
+        x: "log10 of right-hand sides".to_string(),
+        y: "log10 of the error (m)".to_string(),
+        curves: vec![Line::new("Dormand and Prince, order 8", &x, &y)],
+        ..Plot::default()
+    };
+    plot.picture()
+}
