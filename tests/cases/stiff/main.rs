@@ -1,5 +1,6 @@
 //! Stiff motions.
 
+mod d15_corrections_in_circles;
 mod d15_equal_steps;
 mod d15_limits_of_the_stiff_method;
 mod d15_stiff_motions;

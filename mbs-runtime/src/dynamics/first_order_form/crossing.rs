@@ -9,11 +9,11 @@
 //! velocity and energy.
 
 use crate::dynamics::first_order_form::equations::{Equations, Moving};
+use crate::dynamics::formulations::singular::branch::{ASIDE, is_coarse};
 use crate::dynamics::formulations::singular::limit_rows::passes_within;
 use crate::dynamics::formulations::singular::passage::near;
 use crate::dynamics::integrators::dormand_prince8::DormandPrince8;
 use crate::dynamics::integrators::step_control::{Adaptive, Point};
-use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::Tolerance;
 use crate::dynamics::model::{Formulation, Model};
@@ -34,19 +34,9 @@ pub(crate) const MOST_ROWS: usize = 32;
 /// thousandth of it far.
 const MOST_PARTS: u32 = 10_000;
 
-/// Share of a velocity that may change within that distance, and over a step in addition to the change by the accelerations of
-/// its ends. Two branches differ by much of the velocity; that of a parallelogram of short bars changes by 5e-4 of it within the
-/// distance.
-const ASIDE: f64 = 0.1;
-
 /// Distance of a step in the metric over the sum of the margins at its ends from which on it may have led over a singular position: a
 /// margin grows by the distance from there at most.
 const TWICE: f64 = 2.0;
-
-/// Numbers so coarse that steps resolve the turns which their rounding makes.
-fn is_coarse<R: Real>() -> bool {
-    singular::LEAST_MOTION.of::<R>().less(singular::HALF_THE_DIGITS.of())
-}
 
 /// `true` if a step of `h` (s) that begins with `from` comes next to a singular position.
 #[cold]
@@ -160,54 +150,5 @@ where
             return Ok(());
         }
         Err(FailureKind::undecided(self.end.solved.margin).at(t.to_f64()))
-    }
-}
-
-impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
-    /// Fails where a step next to a singular position may have left the branch of the motion, in numbers so coarse that the accelerations do
-    /// not tell. `error`: part of the energy that the integration of a step may cost.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn require_one_branch(
-        &self,
-        from: &Instant<R, N, M, S::States>,
-        next: &Instant<R, N, M, S::States>,
-        error: R,
-    ) -> Result<(), Failure> {
-        if !is_coarse::<R>() || (self.keeps_velocity(from, next) && self.keeps_energy(from, next, error)) {
-            return Ok(());
-        }
-        let margin = next.solved.margin.min(from.solved.margin);
-        Err(FailureKind::undecided(margin).at(from.t.to_f64()))
-    }
-
-    /// The velocity changes over a step as the accelerations of its ends say.
-    fn keeps_velocity(&self, from: &Instant<R, N, M, S::States>, next: &Instant<R, N, M, S::States>) -> bool {
-        let middle = R::constant(-0.5) * (next.t - from.t);
-        let changed = next.y.qd.plus(R::constant(-1.0), &[1.0], [&from.y.qd]);
-        let left = changed.plus(middle, &[1.0, 1.0], [&from.solved.rate.qd, &next.solved.rate.qd]);
-        let speed = self.largest(&from.y.qd).max(self.largest(&next.y.qd));
-        self.largest(&left).less(R::constant(ASIDE) * speed)
-    }
-
-    /// The energy changes over a step by the work supplied, where that is known.
-    fn keeps_energy(
-        &self,
-        from: &Instant<R, N, M, S::States>,
-        next: &Instant<R, N, M, S::States>,
-        error: R,
-    ) -> bool {
-        if !self.balanced {
-            return true;
-        }
-        let at = |model: &Model<'_, S, R, N, M>, t: R, y: &IntegratorState<R, N, S::States>| {
-            model.mechanism.energy(model.parameters, &model.position(t, y), &y.qd)
-        };
-        let start = at(self, from.t, &from.y);
-        let end = self.moved(from.t, next.t, |model| at(model, next.t, &next.y));
-        let (gained, released) = (end.kinetic - start.kinetic, start.potential - end.potential);
-        let defect = gained - released - (next.y.work - from.y.work);
-        let known = start.kinetic + end.kinetic + released.abs();
-        defect.abs().less(motion::UNEXPLAINED.of::<R>().max(error) * known)
     }
 }

@@ -30,6 +30,10 @@ const SLOWLY: f64 = 0.25;
 /// Largest correction (rad, or reference lengths) from which slow ones take the multipliers along: farther away the forces bend.
 const NEARBY: f64 = 1e-3;
 
+/// Part of the correction before from which on one is looked at: multipliers that come slowly have corrections that fall slowly. In a
+/// circle of two points both have one size, but for rounding.
+const SUSPECT: f64 = 0.99;
+
 /// Trapezoidal rule for M q̈ + Φ_qᵀ (λ + α Φ) = Q with λ ← λ + α Φ, then velocities and accelerations put onto Φ̇ = 0 and
 /// Φ̈ = 0 by the same matrix.
 ///
@@ -59,7 +63,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))
+        let next = model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))?;
+        model.require_branch_of_implicit_step(from, &next)?;
+        Ok(next)
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {
@@ -84,7 +90,7 @@ impl AugmentedLagrangian {
         let mut change = start.q.zero().plus(h, &[1.0], [&start.qd]).plus(quarter, &[2.0], [before]);
         let (mut lambda, mut rate) = (from.solved.lambda, from.solved.rate);
         let (mut step, mut last) = ([R::constant(0.0); N], R::constant(f64::MAX));
-        let (mut damping, mut closed) = (Damping::new(1.0), false);
+        let (mut damping, mut closed) = (Damping::new(SUSPECT), false);
         let mut linked = false;
         for round in 0..MOST_ROUNDS {
             let carries = S::FORCE_USES_MULTIPLIERS || linked;
@@ -169,7 +175,7 @@ impl AugmentedLagrangian {
             if links {
                 // What the springs have taken on in this correction.
                 lambda = if carries { lambda } else { lambda.plus(-one, &[1.0], [&taken]) };
-                (linked, damping, last) = (true, Damping::new(1.0), R::constant(f64::MAX));
+                (linked, damping, last) = (true, Damping::new(SUSPECT), R::constant(f64::MAX));
             }
         }
         Err(model.unbalanced(&step, t, MOST_ROUNDS))

@@ -73,7 +73,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))
+        let next = model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))?;
+        model.require_branch_of_implicit_step(from, &next)?;
+        Ok(next)
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {

@@ -63,7 +63,7 @@ pub(crate) struct Damping<R, Y> {
 }
 
 impl<R: Real, Y: Vector<R>> Damping<R, Y> {
-    /// Corrections are looked at that are more than `suspect` times the one before: 1 where multipliers come slowly.
+    /// Corrections are looked at that are more than `suspect` times the one before.
     pub(crate) fn new(suspect: f64) -> Self {
         Damping {
             suspect: R::constant(suspect),
@@ -98,11 +98,13 @@ impl<R: Real, Y: Vector<R>> Damping<R, Y> {
         (correction, size): (&Y, R),
         natural: impl FnOnce(&Y, R) -> Result<(R, R), Failure>,
     ) -> Result<(Y, bool), Failure> {
-        let suspect = self.last.as_ref().is_some_and(|(.., least)| self.suspect * *least <= size);
+        let one = R::constant(1.0);
+        let is_long = self.last.as_ref().is_some_and(|(.., least)| self.suspect * *least <= size);
+        // What a part of a correction leads to is always looked at: circles of three points lead through one with a small correction.
+        let suspect = is_long || self.share < one;
         if suspect && let Some(point) = self.halved(natural)? {
             return Ok((point, false));
         }
-        let one = R::constant(1.0);
         self.last = Some((*here, *correction, size));
         (self.share, self.halvings) = (one, 0);
         self.taken += 1;

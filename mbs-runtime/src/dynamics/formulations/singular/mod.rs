@@ -1,5 +1,6 @@
 //! Singular positions: limits of rows, passages, contradictions, and the reason why no step is accepted.
 
+pub(crate) mod branch;
 pub(crate) mod contradiction;
 pub(crate) mod limit_rows;
 pub(crate) mod passage;
