@@ -15,7 +15,7 @@ use crate::mismatch::nearest;
 pub struct Study {
     /// One sentence for the command line.
     pub about: &'static str,
-    /// What `--param` may change.
+    /// Parameters that `--param` may change.
     pub parameters: &'static [Parameter],
     /// Makes the report; the second argument shows what is being computed.
     pub run: Run,

@@ -64,7 +64,7 @@ pub struct Rocker {
     pub valve_pad: [f64; 2],
 }
 
-/// What both cams are made of.
+/// Data that both cams are made from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     /// Lift of the valve over the cam angle.

@@ -28,7 +28,7 @@
 //! | `spring` | an ordinary valve spring |
 //!
 //! The pitch curves of both cams are functions of the text. [`Design`] makes them from a lift law, in closed form. Radii of pads are in
-//! the curves alone: the gap of a pad and its cam is the distance of its centre from the pitch curve.
+//! the curves alone. So the gap of a pad and its cam is the distance of its centre from the pitch curve.
 //!
 //! Numbers: chosen here, none of a valvetrain in production. Source of the synthesis: Norton, Cam Design and Manufacturing Handbook,
 //! ch. 7; of the contact: Hunt and Crossley 1975.
@@ -99,7 +99,7 @@ mechanism! {
         constraint opens { opener_pad on opening_cam; }
         constraint closes { closer_pad on closing_cam; }
         constraint rests { s == opener_way; }
-        /// What the closer's fork is away from where the opener holds the valve.
+        /// Distance of the closer's fork from the place where the opener holds the valve.
         out apart: m = closer_way - opener_way;
         out lift: m = s;
         out C: [m; 2] = centre;
