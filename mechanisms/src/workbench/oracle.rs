@@ -2,7 +2,7 @@
 
 use mbs_workbench::erased::facade::{AnyEquations, State};
 use mbs_workbench::erased::masses::Loads;
-use mbs_workbench::hard_cases::oracle::{Oracle, State as Moving};
+use mbs_workbench::hard_cases::oracle::{Oracle, OracleState};
 
 use crate::CATALOGUE;
 
@@ -36,7 +36,7 @@ fn apart(equations: &dyn AnyEquations, oracle: &Oracle, noise: &mut Noise) -> f6
     let state = State { q: noise.many(n), qd: noise.many(n), qdd: noise.many(n), t: 0.3 + noise.next() };
     let states = noise.many(equations.tables().map_or(0, |tables| tables.states.len()));
     let loads = Loads { states: states.clone(), lambda: noise.many(m) };
-    let moving = Moving {
+    let moving = OracleState {
         t: state.t,
         q: state.q.clone(),
         qd: state.qd.clone(),
