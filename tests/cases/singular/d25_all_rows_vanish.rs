@@ -1,8 +1,8 @@
 //! D23: where all rows lose their entries at once, a motion changed its assembly with `Ok`: uprights in angles, one distance a loop.
 
 use mbs_runtime::dynamics::{
-    DormandPrince5, DormandPrince8, Explicit, Projection, Radau5, RungeKutta4, Simulation, Tolerance,
-    VelocityTransformation,
+    AugmentedLagrangian, DormandPrince5, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha, Method,
+    Projection, Radau5, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
 };
 use mbs_runtime::mechanism;
 
@@ -193,4 +193,51 @@ fn the_margin_falls_with_the_distance_from_the_line() {
         let run = Simulation::start(text, method, 0.0, [distance; 2], [-3.0; 2]).expect("it starts");
         assert!(run.margin() < 4.0 * distance, "{} at {distance}", run.margin());
     }
+}
+
+mechanism! {
+    /// A bead on two guides that cross: its row loses all entries at the crossing, and its weight acts across the motion.
+    pub mechanism Guides;
+    /// Direction of the guides.
+    param turn: rad = 0;
+    coord p: [m; 2] = [-1, 0];
+    body bead { mass: 1, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    let along = dot(p, unit(turn));
+    let across = dot(p, unit(turn + 90deg));
+    constraint guides { along*across == 0 [m^2]; }
+    start p = -1m*unit(turn) rate 6*unit(turn);
+}
+
+/// Runs of an implicit method that end right, wrong and refused, over the crossing at several directions.
+fn crossed<X: Method<Guides<f64>, f64, 2, 1> + Copy>(name: &str, method: X) -> [u32; 3] {
+    let (mut found, seconds) = ([0; 3], 0.5);
+    for turn in [0.0, 0.1, 0.25_f64] {
+        let along = -1.0 + 6.0 * seconds - 0.5 * 9.81 * turn.sin() * seconds * seconds;
+        for steps in [100, 333, 1000, 3001, 10_007, 30_011] {
+            let mut run = Simulation::start_from_text(Guides { turn }, method, 0.0).expect("it starts");
+            let place = match run.step_to(seconds, steps) {
+                Err(_) => 2,
+                Ok(()) => {
+                    let [x, y] = *run.q();
+                    let error = (x - along * turn.cos()).hypot(y - along * turn.sin());
+                    usize::from(0.01_f64.max(1e3 / f64::from(steps).powi(2)) < error)
+                }
+            };
+            found[place] += 1;
+        }
+    }
+    println!("{name}: {found:?} right, wrong, refused");
+    found
+}
+
+#[test]
+fn no_implicit_step_takes_speed_at_a_crossing_of_guides() {
+    let found = [
+        crossed("augmented Lagrangian", AugmentedLagrangian),
+        crossed("extrapolated", Extrapolated),
+        crossed("generalised-α", GeneralizedAlpha::default()),
+    ];
+    assert!(found.iter().all(|[_, wrong, _]| *wrong == 0), "{found:?}");
+    assert!(found.iter().all(|[right, _, _]| 0 < *right), "{found:?}");
 }

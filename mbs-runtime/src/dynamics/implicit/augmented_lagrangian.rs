@@ -10,7 +10,7 @@ use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::{Method, require_slopes};
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
-use crate::failure::Failure;
+use crate::failure::{Failure, FailureKind};
 use crate::linear_algebra::orthogonal::margin_of_rows;
 use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
@@ -224,7 +224,9 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let position = closed(model, t, &mut y, counts)?;
     let (mechanism, parameters) = (model.mechanism, model.parameters);
     let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &lambda))?;
-    y.qd = penalized.put(&y.qd, &mechanism.phi_t(parameters, &position).each(|rate| -rate)).0;
+    let required = mechanism.phi_t(parameters, &position).each(|rate| -rate);
+    y.qd = penalized.put(&y.qd, &required).0;
+    require_rates(model, t, (&penalized.phi_q, &required), &y.qd)?;
     let (qdd, taken) = penalized.put(&qdd, &mechanism.gamma(parameters, &position, &y.qd));
     let lambda = lambda.plus(R::constant(1.0), &[1.0], [&taken]);
     model.require_unshared_by_rank((&position, t), &y, &lambda)?;
@@ -233,6 +235,29 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let Metric { rows, coordinates, .. } = model.metric;
     let margin = margin_of_rows(&penalized.phi_q, rows, coordinates, singular::DEPENDENT.of());
     Ok(Instant { t, y, solved: Solved { rate, lambda, margin }, carried: qdd })
+}
+
+/// Part of a velocity that may be left across a row whose velocity is put onto it: a hundred times what the springs leave where it holds.
+const ACROSS: f64 = 1e-2;
+
+/// Fails where a row does not hold the velocity that was put onto it, because it loses all its entries: Φ_q `qd` = `required`, M.
+#[inline]
+fn require_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    (phi_q, required): (&[[R; N]; M], &[R; M]),
+    qd: &[R; N],
+) -> Result<(), Failure> {
+    let allowed = R::constant(ACROSS) * model.largest(qd);
+    for (row, required) in phi_q.iter().zip(required) {
+        let open = row.iter().zip(qd).fold(-*required, |sum, (entry, rate)| sum + *entry * *rate);
+        let entries = row.iter().zip(&model.metric.coordinates);
+        let size = entries.fold(R::constant(0.0), |sum, (entry, scale)| sum + (*entry * *scale).abs());
+        if size * allowed < open.abs() {
+            return Err(FailureKind::undecided(size).at(t.to_f64()));
+        }
+    }
+    Ok(())
 }
 
 /// Before: the coordinates of an iteration that has ended. After: the rows hold. Returns the stage-1 values.
