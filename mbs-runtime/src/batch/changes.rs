@@ -14,7 +14,7 @@ where
     S::Lane: Kinematic<R, N, M>,
     R: Real,
 {
-    /// Changes parameters or inputs of any lanes; see [`Stepper::change`].
+    /// Changes parameters or inputs of any lanes; see [`Stepper::change`](crate::Stepper::change).
     pub fn change<X>(&mut self, change: impl FnOnce(&mut S) -> X) -> X {
         if self.changed == [false; L] {
             self.solved = self.mechanism.values();
