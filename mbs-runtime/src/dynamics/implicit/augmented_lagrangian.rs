@@ -254,7 +254,9 @@ fn require_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         let entries = row.iter().zip(&model.metric.coordinates);
         let size = entries.fold(R::constant(0.0), |sum, (entry, scale)| sum + (*entry * *scale).abs());
         if size * allowed < open.abs() {
-            return Err(FailureKind::undecided(size).at(t.to_f64()));
+            let Metric { rows, coordinates, .. } = model.metric;
+            let margin = margin_of_rows(phi_q, rows, coordinates, singular::DEPENDENT.of());
+            return Err(FailureKind::undecided(margin).at(t.to_f64()));
         }
     }
     Ok(())
