@@ -54,20 +54,27 @@ fn peak(samples: &[Sample], force: usize) -> f64 {
     samples.iter().fold(0.0, |most: f64, sample| most.max(sample.forces[force]))
 }
 
+/// Lifts within `bound` (m) of each other, and the largest value of each force within 1e-4 of itself.
+fn assert_agree(name: &str, [found, expected]: [&[Sample]; 2], bound: f64) {
+    let apart = found.iter().zip(expected).map(|(a, b)| (a.lift - b.lift).abs());
+    let lift = apart.fold(0.0, f64::max);
+    println!("desmo, {name}: lift {lift:.1e} m of {bound:.0e}");
+    assert_eq!(found.len(), expected.len());
+    assert!(lift < bound, "{lift:e}");
+    for force in 0..5 {
+        let [found, expected] = [found, expected].map(|samples| peak(samples, force));
+        println!("  peak {force}: {found:.3} N, {:.1e} of 1e-4", found / expected - 1.0);
+        assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
+    }
+}
+
 #[test]
 fn without_play_the_valve_moves_as_formulas_typed_by_hand() {
     const SAMPLES: u32 = 3600;
     for speed in [5000.0, 9000.0] {
         let ours = moved(&valvetrain(rpm(speed), [0.0; 2], true), 1.0, SAMPLES);
         let own = Own::lecture(rpm(speed), [0.0; 2], [0.0; 2]).moved(1.0, SAMPLES);
-        let lift = ours.iter().zip(&own).fold(0.0, |most: f64, (a, b)| most.max((a.lift - b.lift).abs()));
-        println!("desmo, {speed}/min, no play: lift {lift:.1e} m of 1e-9");
-        assert!(lift < 1e-9, "{lift:e}");
-        for force in 0..5 {
-            let [found, expected] = [&ours, &own].map(|samples| peak(samples, force));
-            println!("  peak {force}: {found:.3} N, {:.1e} of 1e-4", found / expected - 1.0);
-            assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
-        }
+        assert_agree(&format!("{speed}/min, no play"), [&ours, &own], 1e-9);
     }
 }
 
@@ -79,14 +86,7 @@ fn with_play_and_friction_the_first_impacts_are_those_of_formulas_typed_by_hand(
     let turns = 200.0 / 360.0;
     let ours = moved(&valvetrain(speed, play, false), turns, SAMPLES);
     let own = Own::lecture(speed, play, [2.0, 3.0]).moved(turns, SAMPLES);
-    let lift = ours.iter().zip(&own).fold(0.0, |most: f64, (a, b)| most.max((a.lift - b.lift).abs()));
-    println!("desmo, 9000/min, with play: lift {lift:.1e} m of 1e-8");
-    assert!(lift < 1e-8, "{lift:e}");
-    for force in 0..5 {
-        let [found, expected] = [&ours, &own].map(|samples| peak(samples, force));
-        println!("  peak {force}: {found:.3} N, {:.1e} of 1e-4", found / expected - 1.0);
-        assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
-    }
+    assert_agree("9000/min, with play", [&ours, &own], 1e-8);
 }
 
 #[test]
