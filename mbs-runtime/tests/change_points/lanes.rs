@@ -13,9 +13,8 @@ fn a_lane_has_the_sign_of_its_own_determinant() {
     let mut alone: [Stepper<InAngles, f64, 3>; LANES] =
         core::array::from_fn(|lane| Stepper::assembled(&PARALLELOGRAM, starts[lane], sides[lane]));
     let guesses = core::array::from_fn(|lane| *alone[lane].q());
-    let mut lanes = InAngles::<Lanes<f64, LANES>>::default();
-    lanes.theta =
-        Signal { value: Lanes(starts), rate: Lanes([0.0; LANES]), acceleration: Lanes([0.0; LANES]) };
+    let theta = Signal { value: Lanes(starts), rate: Lanes([0.0; LANES]), acceleration: Lanes([0.0; LANES]) };
+    let lanes = InAngles::<Lanes<f64, LANES>> { theta, ..Default::default() };
     let mut batch = Batch::assemble(lanes, &guesses, [0.0; LANES]).expect("assemblies");
     for k in 1..=25_u32 {
         let t = 0.1 * f64::from(k);
