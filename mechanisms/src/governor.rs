@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_must_not_be_negative_is_known_with_its_parameter_each_value_once() {
+    fn values_that_must_not_be_negative_are_known_with_their_parameter_each_once() {
         let signed = <Governor as Dynamic<f64, 16, 12>>::NON_NEGATIVE;
         let parameter = |name: &str| signed.iter().find(|signed| signed.name == name).map(|s| s.parameter);
         assert_eq!(parameter("shaft.mass"), Some("rho"));

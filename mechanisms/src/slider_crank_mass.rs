@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_text_starts_stays_and_the_rows_give_the_rest() {
+    fn declared_starts_stay_and_the_rows_give_the_rest() {
         let method = Explicit::new(DormandPrince8, Projection::default());
         let run = Simulation::start_from_text(CrankPistonReleased::<f64>::default(), method, 0.0);
         let run = run.expect("it starts");

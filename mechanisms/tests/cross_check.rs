@@ -87,7 +87,7 @@ fn a_slip_in_a_definition_is_found() {
 }
 
 #[test]
-fn what_cannot_be_compared_says_why() {
+fn quantities_that_cannot_be_compared_say_why() {
     let oracle = oracle();
     let four_bar = CATALOGUE.find("four_bar").expect("in the list");
     let missing = verify_against(four_bar, Path::new("no/such/file.py"), &oracle);

@@ -348,7 +348,7 @@ fn masses_forces_multipliers_and_energies_are_printed_too() {
 }
 
 #[test]
-fn what_no_body_counts_is_said() {
+fn energies_that_no_body_counts_are_told() {
     let text = text_of(&["dof", "n_four_bar"]);
     assert!(text.contains("5 point masses have 10 freedoms apart; joints and guides take 9"), "{text}");
     assert!(text.contains("energy of its own (`kinetic`)"), "{text}");

@@ -271,7 +271,7 @@ fn a_lost_run_is_lost_and_not_one_that_passed_a_singular_position() {
 }
 
 #[test]
-fn what_stands_in_the_way_of_a_motion_is_named() {
+fn obstacles_of_a_motion_are_named() {
     let scratch = Scratch::new("obstacle");
     let fails = |arguments: &[&str]| failure(run_into(&scratch, &[&["run"], arguments].concat()), 1);
     for method in [&["--method", "projection"][..], &["--method", "velocity"], &["--integrator", "rk4"]] {
@@ -286,7 +286,7 @@ fn what_stands_in_the_way_of_a_motion_is_named() {
 }
 
 #[test]
-fn what_really_ran_in_place_of_independent_coordinates_is_said() {
+fn methods_that_ran_in_place_of_independent_coordinates_are_named() {
     let scratch = Scratch::new("replaced");
     let run = |arguments: &[&str]| standard_output(run_into(&scratch, &[&["run"], arguments].concat()));
     let text = run(&["bricard", "--method", "velocity", "--steps", "2", "--until", "0.02"]);
@@ -335,7 +335,7 @@ fn a_multiplier_that_is_one_choice_of_many_is_never_shown_without_a_word() {
 }
 
 #[test]
-fn what_an_analysis_has_no_use_for_is_refused() {
+fn options_that_an_analysis_has_no_use_for_are_refused() {
     let cases: [(&[&str], &str); 21] = [
         (&["equilibrium", "pendulum", "--until", "3"], "unexpected argument '--until'"),
         (&["equilibrium", "pendulum", "--steps", "3"], "unexpected argument '--steps'"),

@@ -60,7 +60,7 @@ fn text_closed_form_and_runtime_agree() {
 }
 
 #[test]
-fn what_hangs_on_the_drivers_follows_them() {
+fn coordinates_that_depend_on_drivers_follow_them() {
     let arm: DrivenArm = DrivenArm::default();
     let mut motion = Stepper::assemble(arm, [0.0, 20.0, 20.0, 0.0], 0.0).expect("it assembles");
     for _ in 0..50 {

@@ -154,7 +154,7 @@ fn whole_turns_survive_a_reset() {
 }
 
 #[test]
-fn what_is_driven_turns_too_and_phases_turn_by_their_factor() {
+fn driven_coordinates_turn_too_and_phases_turn_by_their_factor() {
     let link = DragLink::<f64> { speed: 40.0, ..DragLink::default() };
     let guess = link.guess(&link.parameters());
     let mut stepper = Stepper::assemble(link, guess, 0.0).expect("an assembly");

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_told_with_its_cure() {
+    fn text_that_is_no_number_is_told_with_its_cure() {
         for (text, cure) in [
             ("200 mm", "write `200mm`"),
             ("4m^2", "`4 [m^2]`"),

@@ -178,7 +178,7 @@ mod tests {
     ];
 
     #[test]
-    fn what_shows_no_size_leaves_the_reference_length() {
+    fn coordinates_without_a_size_leave_the_reference_length() {
         for (text, expected) in [(CRANK, 0.3), (RODS, 0.3), (AREA, 0.3), (BALL, 0.3)] {
             let x = if text == CRANK { 0.38 } else { expected };
             assert_eq!(reference(text), expected, "{text}");

@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_matched_stays_free() {
+    fn unmatched_unknowns_stay_free() {
         let matching = match_rows(&[vec![0], vec![0], vec![1, 2]], 3);
         assert_eq!(matching.free_rows().collect::<Vec<_>>(), [1]);
         assert_eq!(matching.free_columns().count(), 1);

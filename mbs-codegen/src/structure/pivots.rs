@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn what_closed_forms_solve_has_no_order() {
+    fn blocks_in_closed_form_have_no_order() {
         assert_eq!(of(&["xx.", ".xx", "x.x"]), None);
     }
 

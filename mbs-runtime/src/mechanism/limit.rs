@@ -118,14 +118,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_of_one_bound_is_a_share_of_it() {
+    fn distances_from_a_single_bound_are_shares_of_it() {
         let left = |low: f64, value| Limit { low, value, high: OPEN }.nearer();
         assert_eq!((left(-2.0, -1.5), left(2.0, 2.0)), ((-2.0, 0.25), (2.0, 0.0)));
         assert_eq!((left(0.0, 0.0).1, left(0.0, 1e-9).1), (0.0, f64::INFINITY));
     }
 
     #[test]
-    fn what_is_left_is_a_share_of_the_range() {
+    fn distances_from_bounds_are_shares_of_the_range() {
         assert_eq!((at(-0.8).nearer().0, at(2.0).nearer()), (-1.0, (3.0, 0.25)));
         assert_eq!(at(3.0 + 4e-15).nearer(), (3.0, 0.0));
     }

@@ -363,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_state_is_none() {
+    fn bytes_that_are_no_state_give_none() {
         let bytes = bytes();
         assert_eq!(State::from_le_bytes(&bytes[..LENGTH - 1]), None);
         assert_eq!(State::from_le_bytes(&[]), None);

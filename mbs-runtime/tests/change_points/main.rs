@@ -5,3 +5,4 @@ mod lanes;
 mod linkage;
 mod plan;
 mod runs;
+mod turns;

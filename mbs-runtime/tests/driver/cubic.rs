@@ -235,7 +235,7 @@ fn lanes_and_single_precision_agree() {
 }
 
 #[test]
-fn what_cannot_be_fitted_is_named() {
+fn points_that_cannot_be_fitted_are_named() {
     let good = [0.0, 1.0, 2.0, 3.0];
     let refused = |x: [f64; 4], y: [f64; 4]| CubicSpline::natural(&x, &y).err();
     assert_eq!(refused([0.0, 1.0, 1.0, 2.0], good), Some(FitError::PointsNotIncreasing { point: 2 }));

@@ -146,7 +146,7 @@ fn lanes_and_single_precision_agree() {
 }
 
 #[test]
-fn what_is_not_finite_gives_no_number() {
+fn arguments_that_are_not_finite_give_no_number() {
     assert_nan_stays(&HARMONIC);
     assert_nan_stays(&CUBIC);
     assert_nan_stays(&rise::<Polynomial345>());

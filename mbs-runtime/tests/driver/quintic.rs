@@ -37,7 +37,7 @@ fn spline<const P: usize>(unevenness: f64) -> PeriodicQuintic<P> {
 }
 
 #[test]
-fn it_converges_with_the_sixth_power() {
+fn the_fit_converges_with_the_sixth_power() {
     for unevenness in [0.0, 0.3] {
         let coarse: [f64; 6] = errors(&spline::<32>(unevenness), wave, [-1.0, 6.0]);
         assert_order(coarse, errors(&spline::<64>(unevenness), wave, [-1.0, 6.0]), 6.0);
@@ -45,7 +45,7 @@ fn it_converges_with_the_sixth_power() {
 }
 
 #[test]
-fn it_goes_through_its_points_turn_after_turn() {
+fn the_fit_goes_through_its_points_turn_after_turn() {
     let x = knots::<23>(0.4);
     let mut sequence = Sequence(5);
     let y: [f64; 23] = from_fn(|_| sequence.number());
@@ -132,7 +132,7 @@ fn units_do_not_matter() {
 }
 
 #[test]
-fn what_cannot_be_fitted_is_named() {
+fn points_that_cannot_be_fitted_are_named() {
     let good = knots::<8>(0.0);
     let refused = |x: [f64; 8], period: f64| PeriodicQuintic::interpolate(&x, period, &x).err();
     let changed = |index: usize, x: f64| {

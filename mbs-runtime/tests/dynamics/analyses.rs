@@ -117,7 +117,7 @@ mechanism! {
 }
 
 #[test]
-fn where_nothing_rests_the_least_push_is_named() {
+fn a_mechanism_without_rest_names_the_least_force() {
     // The weight holds 9.81 N m at most; of 12 N m the rest pushes on.
     for start in [1.0, -2.0, 0.01] {
         let failure = equilibrium(&Arm::default(), 0.0, &[start]).unwrap_err();

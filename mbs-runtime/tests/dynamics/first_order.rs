@@ -127,7 +127,7 @@ fn a_nonlinear_state_rests_on_a_curve() {
 }
 
 #[test]
-fn what_has_no_rest_is_refused_and_what_rests_anywhere_stays() {
+fn states_without_rest_are_refused_and_indifferent_ones_stay() {
     let failure = equilibrium(&Stiffening::<f64>::default(), 0.0, &[0.1]).unwrap_err();
     assert!(
         matches!(failure, Failure { kind: FailureKind::NoStateEquilibrium { state, .. }, .. } if state.name == "k"),
@@ -149,7 +149,7 @@ fn what_has_no_rest_is_refused_and_what_rests_anywhere_stays() {
 }
 
 #[test]
-fn what_a_control_integrates_is_zero_at_rest_and_the_control_holds_what_acts() {
+fn integrated_errors_of_a_control_vanish_at_rest_and_the_control_holds_the_load() {
     let (rest, [z]) = equilibrium_with_states(&Integrating::<f64>::default(), 0.0, &[0.1]).unwrap();
     assert!((rest.q[0] - 0.2).abs() < 1e-13 && (z - 2.0).abs() < 1e-12, "{:?} {z}", rest.q);
     assert!(rest.indifferent == [false] && rest.iterations <= 6, "{rest:?}");

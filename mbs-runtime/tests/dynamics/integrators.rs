@@ -233,7 +233,7 @@ impl ErrorNorm<f64> for Explosion {
 }
 
 #[test]
-fn where_no_step_is_small_enough_the_failure_says_so() {
+fn a_tolerance_that_no_step_reaches_is_a_failure() {
     let from = Point { t: 0.0, y: [1.0], rate: [1.0] };
     let run = |until: f64| {
         let run =

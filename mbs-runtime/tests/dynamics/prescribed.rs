@@ -93,7 +93,7 @@ fn a_prescribed_rate_is_integrated_to_the_tolerance() {
 }
 
 #[test]
-fn what_is_seen_on_the_way_is_as_exact() {
+fn samples_between_steps_are_as_exact() {
     let run = shaken(40.0, DormandPrince8, VelocityTransformation).with_tolerance(Tolerance::new(1e-10));
     let mut sampled = run;
     let mut worst = 0.0_f64;

@@ -127,8 +127,7 @@ fn a_loop_whose_uprights_differ_turns_aside_where_its_bars_come_almost_in_line()
 }
 
 #[test]
-fn where_rounding_decides_whether_a_loop_turns_aside_a_strict_run_goes_on_or_says_so_and_a_loose_one_goes_on()
-{
+fn branches_that_rounding_decides_are_refused_by_strict_runs_at_most() {
     /// Of 15 J: what a turn that no step resolves may cost a loose run.
     const DEFECT: f64 = 1e-4;
     for excess in [1e-9, 3e-10, 1e-10, 5e-11, 2e-11, 1e-11] {
@@ -178,7 +177,7 @@ mechanism! {
 }
 
 #[test]
-fn where_a_force_jumps_in_line_a_strict_run_stops_there_and_a_loose_one_goes_on() {
+fn a_force_that_jumps_in_line_stops_a_strict_run_and_no_loose_one() {
     // Half of the jump moves both masses; a step of 1e-7 rad, the least in line, leaves 2.5e-8 m/s of it: five decades above the strict
     // tolerance, a decade below the loose one.
     const JUMP: f64 = 1.0;

@@ -178,7 +178,7 @@ fn a_position_in_the_wrong_assembly_is_refused_however_small_the_budget() {
 }
 
 #[test]
-fn what_is_no_number_is_refused_and_the_last_good_state_kept() {
+fn inputs_that_are_no_numbers_are_refused_and_the_last_good_state_kept() {
     let mut stepper = reference::<1>();
     assert!(matches!(stepper.step(0.01, AMPLE), Step::Done(_)));
     let _ = stepper.step(0.02, SINGLE);

@@ -71,7 +71,7 @@ fn a_branch_that_does_not_hold_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_assembled_there_is_refused() {
+fn a_reset_to_where_nothing_assembles_is_refused() {
     let lock_up = FourBar::<f64, 0>::dimensioned(3.0, 2.0, 2.0, 4.0);
     let saved = Stepper::assemble(lock_up, [0.0, 0.0, 0.5, 0.0, 1.5], 1.15).unwrap().save();
     let failure = Stepper::assemble_near(lock_up, &saved, 1.25).unwrap_err();

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use mbs_runtime::{Batch, Failure, FailureKind, Lanes, Signal, Stepper, mechanism};
+use mbs_runtime::{Batch, Failure, FailureKind, Function, Lanes, Scalar, Signal, Stepper, mechanism};
 
 mechanism! {
     /// A point on a crank that an input turns, and a bar from it to a slide.
@@ -213,3 +213,76 @@ fn whole_turns_of_a_guess_are_counted_on_both_sides_of_zero() {
         assert!((q + count as f64 * TAU - guess).abs() < 1e-11, "{turns}: {q} {count}");
     }
 }
+
+/// The identity, but for a derivative that is infinite near one argument, where the others are not.
+#[derive(Clone)]
+struct Kinked {
+    /// The argument (s).
+    at: f64,
+    /// Which derivative: 1 or 2.
+    order: usize,
+}
+
+impl<T: Scalar> Function<T> for Kinked {
+    const ORDER: usize = 2;
+
+    fn jet<const K: usize>(&self, x: T) -> [T; K] {
+        let near = (x - T::constant(self.at)).abs().less(T::constant(1e-9));
+        core::array::from_fn(|order| {
+            let regular = match order {
+                0 => x,
+                1 => T::constant(1.0),
+                _ => T::constant(0.0),
+            };
+            if order == self.order { T::select(near, T::constant(f64::INFINITY), regular) } else { regular }
+        })
+    }
+}
+
+/// A text with so many slides that one law moves, each at an instant of its own, and the steps that end where the law has no rate.
+macro_rules! slides {
+    ($mechanism:ident, $test:ident, $count:literal: $($slide:ident $later:tt),*) => {
+        mechanism! {
+            /// Slides that one law moves, each later than the last.
+            pub mechanism $mechanism;
+            function law: m(s), C2;
+            $(coord $slide: m = 0;)*
+            constraint laws { $($slide == law(t + $later*1s);)* }
+        }
+
+        #[test]
+        fn $test() {
+            for order in [1, 2] {
+                for broken in 0..$count {
+                    let law = Kinked { at: f64::from(broken) + 0.01, order };
+                    let guess = core::array::from_fn(|slide| slide as f64);
+                    let mut run = Stepper::assemble($mechanism::new(law.clone()), guess, 0.0).unwrap();
+                    let (before, step) = (*run.q(), run.advance_to(0.01));
+                    let fails = |step: &Result<_, Failure>| {
+                        matches!(step, Err(Failure { kind: FailureKind::NonFinite { .. }, .. }))
+                    };
+                    assert!(fails(&step.map(|_| ())), "{order}, {broken}: {step:?} {:?} {:?}", run.qd(), run.qdd());
+                    assert_eq!(*run.q(), before);
+                    for lane in 0..4 {
+                        let mechanism = $mechanism::<Lanes<f64, 4>, _>::new(law.clone());
+                        let mut batch = Batch::assemble(mechanism, &[guess; 4], [0.0; 4]).ok().unwrap();
+                        let ends = core::array::from_fn(|other| if other == lane { 0.01 } else { 0.009 });
+                        let steps = batch.advance_to(ends);
+                        for (other, step) in steps.iter().enumerate() {
+                            let step = step.map(|_| ());
+                            assert_eq!(fails(&step), other == lane, "{order}, {broken}, {lane}: {other} {step:?}");
+                        }
+                    }
+                }
+            }
+        }
+    };
+}
+
+slides!(Three, no_infinite_rate_of_three_coordinates_is_passed_over, 3: a 0, b 1, c 2);
+slides!(Six, no_infinite_rate_of_six_coordinates_is_passed_over, 6: a 0, b 1, c 2, d 3, e 4, f 5);
+slides!(
+    Ten,
+    no_infinite_rate_of_ten_coordinates_is_passed_over,
+    10: a 0, b 1, c 2, d 3, e 4, f 5, g 6, h 7, i 8, j 9
+);

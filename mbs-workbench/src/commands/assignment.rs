@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_refused_with_a_cure() {
+    fn values_that_are_no_numbers_are_refused_with_a_cure() {
         for (text, cure) in [
             ("omega", "NAME=VALUE"),
             ("=2", "a name is needed"),

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_command_line_sets_overrules_the_presets() {
+    fn options_of_the_command_line_overrule_the_presets() {
         let cards = [card!(self::Crank::default())];
         let catalogue = Catalogue { cards: &cards };
         let target = Target::find(&catalogue, &cards[0].name()).expect("in the list");

@@ -59,7 +59,7 @@ fn functions_agree_with_values_of_60_digits() {
 }
 
 #[test]
-fn what_is_not_finite_stays_so_and_orders_as_numbers_do() {
+fn non_finite_numbers_stay_so_and_compare_as_numbers_do() {
     let (nan, inf) = (DoubleDouble::new(f64::NAN), DoubleDouble::new(f64::INFINITY));
     let one = DoubleDouble::new(1.0);
     for found in

@@ -110,7 +110,7 @@ fn calls_in_a_rust_source_are_laid_out_where_they_stand() {
 }
 
 #[test]
-fn what_cannot_be_read_stays_with_its_fault() {
+fn texts_that_cannot_be_read_stay_with_their_fault() {
     let text = "mechanism  A;\ncoord  phi: rad\ncoord x: m;\n";
     let layout = bare(text);
     assert_eq!(layout.content, text);

@@ -22,7 +22,7 @@ fn the_four_bar_has_one_degree_of_freedom_and_its_crank_is_independent() {
 }
 
 #[test]
-fn what_the_text_names_is_independent_unless_it_leaves_others_open_at_the_position() {
+fn named_coordinates_are_independent_unless_they_leave_others_open_at_the_position() {
     use mbs_runtime::mechanism;
     mechanism! {
         pub mechanism Named;

@@ -136,7 +136,7 @@ fn an_event_function_that_is_nan_is_a_failure() {
 }
 
 #[test]
-fn what_comes_behind_an_event_is_not_told_before_it() {
+fn later_events_are_not_told_before_an_earlier_one() {
     mechanism! {
         pub mechanism Bounded;
         coord y: m = 0;

@@ -80,7 +80,7 @@ mechanism! {
 
 /// The pulse closes the gap for 18 ms of a step of a second: less than an eighth of it, more than the required resolution.
 #[test]
-fn what_calls_functions_keeps_to_the_resolution() {
+fn gaps_with_functions_keep_to_the_resolution() {
     for shift in 0..20 {
         let start = -0.02 * f64::from(shift);
         let fly = |resolution: Option<f64>| {
@@ -166,7 +166,7 @@ mechanism! {
 /// A coordinate that rests on its bound, another that swings from bound to bound: neither leaves its range. The search costs as
 /// much as the steps, not thousands of parts.
 #[test]
-fn what_rests_on_its_bound_is_looked_at_a_few_times() {
+fn a_coordinate_at_rest_on_its_bound_is_evaluated_a_few_times() {
     let count = |least: f64| {
         let method = Explicit::new(DormandPrince8, Projection::default());
         let resting = Resting { least: Counted(least) };

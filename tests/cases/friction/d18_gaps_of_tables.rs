@@ -134,7 +134,7 @@ fn refused<T>(found: Result<T, Failure>) {
 }
 
 #[test]
-fn what_needs_the_third_derivative_of_a_gap_says_so() {
+fn methods_that_need_the_third_derivative_of_a_gap_say_so() {
     fn start(method: impl Method<Ball, f64, 2, 0>) -> Result<(), Failure> {
         Simulation::start(Slide::new(Flank::default()), method, 0.0, [0.0; 2], [0.0; 2]).map(|_| ())
     }

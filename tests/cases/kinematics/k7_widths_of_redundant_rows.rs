@@ -77,7 +77,7 @@ fn least_squares(alpha: f64, error: f64) -> ([f64; 3], [f64; 4]) {
 }
 
 #[test]
-fn what_data_of_fifteen_digits_leave_is_no_contradiction() {
+fn residuals_of_data_with_fifteen_digits_are_no_contradiction() {
     for error in [1e-15, 1e-14, 3e-14, 1e-13, -1e-13] {
         let mut exact =
             Stepper::assemble(Exact::<f64> { error }, GUESS, 0.0).expect("the digits of the data");

@@ -105,7 +105,7 @@ fn multiples_without_a_unit_take_the_declared_one_wherever_numbers_do() {
 }
 
 #[test]
-fn what_has_no_number_to_take_a_unit_keeps_its_own() {
+fn expressions_without_a_number_for_the_unit_keep_their_own() {
     for refused in [
         "force push: [0, cos(phi)] on L*unit(phi);",
         "force push: [0, sin(2*phi)] on L*unit(phi);",

@@ -237,7 +237,7 @@ mod types_of_the_caller {
 }
 
 #[test]
-fn what_is_named_so_compiles_and_runs() {
+fn texts_with_names_of_rust_compile_and_run() {
     let ball = types_of_the_caller::BallDriven::default();
     let motion = Stepper::assemble(ball, [0.1, 1.0], 0.0).expect("assembled");
     assert!((motion.q()[1] - 0.99_f64.sqrt()).abs() < 1e-15);

@@ -176,7 +176,7 @@ fn fixed_steps_over_a_singular_position_gain_no_energy() {
 }
 
 #[test]
-fn what_can_be_advanced_can_be_sampled() {
+fn motions_that_can_be_advanced_can_be_sampled() {
     fn assert_sampled<S, I, F, const N: usize, const M: usize>((integrator, formulation): (I, F))
     where
         S: Dynamic<f64, N, M> + Designed,

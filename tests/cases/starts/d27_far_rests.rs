@@ -105,7 +105,7 @@ fn a_rest_is_found_from_afar_in_single_precision() {
 }
 
 #[test]
-fn where_nothing_answers_there_is_no_rest() {
+fn forces_without_an_answer_leave_no_rest() {
     for torque in [0.0, 2.0] {
         let failure = equilibrium(&Falling { torque }, 0.0, &[1.0, 0.3]).expect_err("it falls");
         assert!(matches!(failure.kind, FailureKind::NoEquilibrium { .. }), "{failure}");

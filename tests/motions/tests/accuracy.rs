@@ -113,7 +113,7 @@ fn reached<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(name: &str, me
 }
 
 #[test]
-fn what_is_asked_for_is_reached_and_what_is_estimated_is_true() {
+fn asked_accuracies_are_reached_and_estimates_are_true() {
     reached("pendulum", Pendulum::<f64>::default(), 5.0);
     reached("double pendulum", DoublePendulum::<f64>::default(), 3.0);
     reached("cart-pole", CartPole::<f64>::default(), 1.0);

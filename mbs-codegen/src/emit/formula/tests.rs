@@ -109,7 +109,7 @@ fn rates_of_inputs_go_by_the_name_of_the_input() {
 
 /// Φ trebles thirty times over: as a tree it has 3³⁰ leaves.
 #[test]
-fn what_unfolds_to_a_huge_tree_gets_names_for_its_parts() {
+fn huge_trees_get_names_for_their_parts() {
     let mut source = String::from("mechanism M; coord x: 1; let a0 = x;");
     for k in 1..=30 {
         source += &format!("let a{k} = a{}*sin(a{}) + cos(a{});", k - 1, k - 1, k - 1);
@@ -165,7 +165,7 @@ fn the_structure_of_the_four_bar() {
 }
 
 #[test]
-fn what_is_not_square_is_a_fault_of_the_structure_alone() {
+fn a_text_that_is_not_square_is_a_fault_of_the_structure_alone() {
     let source = "mechanism M; coord x: rad; coord y: rad; constraint c { x + y == 0; }";
     assert!(crate::structure_of(source, None).expect_err("one row short").contains("1 row"));
     assert_eq!(formulas(source, None).expect("formulas need no square").phi, ["x + y"]);

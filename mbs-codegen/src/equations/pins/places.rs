@@ -166,7 +166,7 @@ mod tests {
         out force: [N; 2] = reaction(knee, rod);";
 
     #[test]
-    fn what_a_drive_or_a_guide_holds_is_no_excuse() {
+    fn points_held_by_a_drive_or_a_guide_are_no_excuse() {
         accepts(DRIVEN, "p");
         accepts(DRIVEN, "300mm*unit(theta)");
         for place in ["q", "[0, 0]", "(p + q)/2", "300mm*unit(theta + 0.01)"] {

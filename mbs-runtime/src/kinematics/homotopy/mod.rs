@@ -218,7 +218,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_number_is_not_near() {
+    fn nan_is_not_near() {
         let nan = f64::NAN;
         assert!(is_near(0.01, 0.1) && !is_near(0.03, 0.1));
         assert!(

@@ -125,7 +125,7 @@ fn sines_of_narrow_intervals_are_narrow() {
 }
 
 #[test]
-fn what_is_no_number_is_any() {
+fn an_operation_without_a_number_encloses_everything() {
     for value in [f64::NAN, f64::INFINITY] {
         let any = Interval::of(value) - Interval::of(value);
         assert_eq!((any.low, any.high), (f64::NEG_INFINITY, f64::INFINITY));

@@ -144,7 +144,7 @@ fn a_periodic_law_has_no_ends() {
 }
 
 #[test]
-fn what_makes_no_law_is_refused_with_the_reason() {
+fn conditions_without_a_law_are_refused_with_the_reason() {
     let full = "at 0deg: s = 0, v = 0, a = 0; at 160deg: s = 0, v = 0, a = 0";
     for (text, reason) in [
         (format!("degree 5; knots 0deg 80deg 160deg; {full}"), "6 independent constraints are too few for 7 coefficients"),

@@ -205,7 +205,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn where_a_stabilisation_does_not_lead_through_the_end_names_what_does() {
+    fn a_stabilisation_that_stops_names_one_that_goes_on() {
         let failure = FailureKind::Undecided { margin: 1e-3, single: false }.at(7.061);
         let of = |stabilization| ended(failure, stabilization);
         for lost in [Stabilization::None, Stabilization::Baumgarte(Baumgarte::default())] {

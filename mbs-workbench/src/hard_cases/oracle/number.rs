@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_still_survives_an_infinite_slope() {
+    fn a_constant_argument_survives_an_infinite_slope() {
         let root = Number::still(0.0).function("sqrt").expect("a function");
         assert_eq!((root.value, root.rate), (Dual::default(), Dual::default()));
         assert!(Number::still(2.0).der().is_still());

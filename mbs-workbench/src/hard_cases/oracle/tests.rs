@@ -86,7 +86,7 @@ fn loops_effects_and_sums_are_read_in_the_order_of_the_text() {
 }
 
 #[test]
-fn what_is_not_evaluated_is_named() {
+fn parts_that_are_not_evaluated_are_named() {
     let with = |rest: &str| format!("{PENDULUM} {rest}");
     let oracle = read(&with("force pull: [reaction(rod, bob), 0] on p;"));
     let found = oracle.map(|oracle| oracle.equations_of_motion(&lowest(1.0), &[1.0, 0.0]));

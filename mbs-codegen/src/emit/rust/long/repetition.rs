@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_repeat_itself_is_cut_to_length() {
+    fn rows_without_repetition_are_cut_to_length() {
         let sequence: Vec<usize> = (0..25).collect();
         assert_eq!(
             stretches(&sequence, |_| 1, 10, Lengths::USUAL),

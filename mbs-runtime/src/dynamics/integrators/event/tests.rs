@@ -66,7 +66,7 @@ fn evaluations_are_few_and_bounded() {
 }
 
 #[test]
-fn what_is_not_smooth_is_found_where_it_lasts_as_long_as_the_resolution() {
+fn closings_that_are_not_smooth_are_found_from_the_resolution_on() {
     let mut state = 1_u64;
     for _ in 0..200 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
