@@ -1,4 +1,4 @@
-//! D23: where all rows lose their entries at once, a motion changed its assembly with `Ok`: uprights in angles, one distance a loop.
+//! D25: where all rows lose their entries at once, a motion changed its assembly with `Ok`: uprights in angles, one distance a loop.
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, DormandPrince5, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha, Method,

@@ -1,4 +1,4 @@
-//! D23: a declared rate at a dead centre, where its coordinate has none but 0, was met with 1e9 rad/s of the others.
+//! D26: a declared rate at a dead centre, where its coordinate has none but 0, was met with 1e9 rad/s of the others.
 
 use mbs_runtime::dynamics::{DormandPrince5, DormandPrince8, Explicit, Projection, Simulation};
 use mbs_runtime::{Dynamic, mechanism};

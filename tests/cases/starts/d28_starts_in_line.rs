@@ -1,4 +1,4 @@
-//! D24: bars that turn could not start in line, for want of a row that holds them there.
+//! D28: bars that turn could not start in line, for want of a row that holds them there.
 
 use mbs_runtime::dynamics::{
     DormandPrince8, Explicit, GeneralizedAlpha, Penalty, Projection, RungeKutta4, Simulation, Unstabilized,

@@ -1,4 +1,4 @@
-//! D25: steps of the augmented Lagrangian ended with rows that were open, by 3.65 m of a rod of 1 m.
+//! D29: steps of the augmented Lagrangian ended with rows that were open, by 3.65 m of a rod of 1 m.
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Explicit, Extrapolated, GeneralizedAlpha, Method, Projection, Radau5, RungeKutta4,
