@@ -15,9 +15,9 @@ mechanism! {
     param rocker: m = 1;
     param ground: m = 2;
     param omega: rad/s = 1;
-    coord phi: turn;
-    coord psi: rad;
-    coord chi: rad;
+    coord phi: turn = 0;
+    coord psi: rad = 0;
+    coord chi: rad = 0;
     constraint closure { crank*unit(phi) + coupler*unit(psi) == [ground, 0] + rocker*unit(chi); }
     drive motor: rate(phi) == omega;
 }
@@ -50,14 +50,21 @@ fn plan(start: f64, random: &mut Random) -> Vec<(f64, f64, f64)> {
     steps
 }
 
-/// Distance from the right assembly over the reach of rounding, where the steps lead to.
+/// The path that a point is on in this turn, where it is on `side` in the first: of bars that fold flat once a turn, the other one
+/// in every second turn.
+fn path(linkage: &Linkage, side: f64, angle: f64) -> f64 {
+    let turn = (angle / TAU).floor();
+    if linkage.centre == 0.0 || turn.rem_euclid(2.0) == 0.0 { side } else { -side }
+}
+
+/// Distance from the right assembly, times the angle from where a turn ends: rounding is divided by it there.
 fn off(linkage: &Linkage, side: f64, q: &[f64; 3], angle: f64) -> f64 {
     let point = [
         linkage.crank * q[0].cos() + linkage.coupler * q[1].cos(),
         linkage.crank * q[0].sin() + linkage.coupler * q[1].sin(),
     ];
     let from_centre = (angle - PI).rem_euclid(TAU);
-    distance(point, linkage.point(angle, side)) * from_centre.min(TAU - from_centre)
+    distance(point, linkage.point(angle, path(linkage, side, angle))) * from_centre.min(TAU - from_centre)
 }
 
 fn guess(linkage: &Linkage, side: f64, angle: f64) -> [f64; 3] {
@@ -75,7 +82,7 @@ fn a_crank_that_ends_its_turns_at_a_change_point_keeps_its_assembly() {
             let start = random.between(1.5, 2.5);
             let steps = plan(start, &mut random);
             let Linkage { crank, coupler, rocker, ground, .. } = linkage;
-            let design = Turning { crank, coupler, rocker, ground, omega: 1.0 };
+            let design = Turning { crank, coupler, rocker, ground, ..Turning::default() };
             let mut alone: Stepper<_, f64, 3> =
                 Stepper::assemble(design, guess(&linkage, side, start), 0.0).expect("an assembly");
             let mut lanes = Turning::<Lanes<f64, 2>>::default();

@@ -264,7 +264,7 @@ macro_rules! slides {
                     assert!(fails(&step.map(|_| ())), "{order}, {broken}: {step:?} {:?} {:?}", run.qd(), run.qdd());
                     assert_eq!(*run.q(), before);
                     for lane in 0..4 {
-                        let mechanism = $mechanism::<Lanes<f64, 4>, _>::new(law.clone());
+                        let mechanism = $mechanism::<_, Lanes<f64, 4>>::new(law.clone());
                         let mut batch = Batch::assemble(mechanism, &[guess; 4], [0.0; 4]).ok().unwrap();
                         let ends = core::array::from_fn(|other| if other == lane { 0.01 } else { 0.009 });
                         let steps = batch.advance_to(ends);
