@@ -1,6 +1,8 @@
 //! T8: the homotopy of a lane that leaves its batch begins at its own parameters and inputs, not at those of a neighbouring lane.
 
-use mbs_runtime::{Batch, Lanes, Stepper, mechanism};
+use core::mem::discriminant;
+
+use mbs_runtime::{Batch, Failure, Lanes, Stepper, mechanism};
 
 mechanism! {
     /// A four-bar whose crank turns all the way round, by an input; its coupler is a parameter.
@@ -96,7 +98,9 @@ fn a_lane_that_failed_begins_where_it_was_solved() {
             for (lane, stepper) in alone.iter_mut().enumerate() {
                 stepper.change(|own| own.theta.value = next[lane]);
                 let step = stepper.advance_to(t).map(|_| ());
-                assert_eq!(steps[lane].map(|_| ()), step, "{k}, lane {lane}");
+                // What is left of a row that cannot close has digits of its own.
+                let kind = |step: Result<(), Failure>| step.map_err(|failure| discriminant(&failure.kind));
+                assert_eq!(kind(steps[lane].map(|_| ())), kind(step), "{k}, lane {lane}");
                 let apart = batch.q().iter().zip(stepper.q()).map(|(a, b)| (a.0[lane] - b).abs());
                 assert!(
                     apart.fold(0.0, f64::max) < 1e-11,
