@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use mbs_runtime::{Batch, Lanes, Stepper, mechanism};
+use mbs_runtime::{Batch, Lanes, Mechanism, Stepper, mechanism};
 
 use crate::linkage::{Linkage, PARALLELOGRAM, STRETCHED, distance};
 use crate::plan::Random;
@@ -73,6 +73,20 @@ fn guess(linkage: &Linkage, side: f64, angle: f64) -> [f64; 3] {
     [angle, along([linkage.crank * angle.cos(), linkage.crank * angle.sin()]), along([linkage.ground, 0.0])]
 }
 
+/// Angle less its phase (rad) at the position and at the last one that leads on, from the bytes of the saved state: an angle follows
+/// its phase, in whatever turn.
+fn behind_phases(stepper: &Stepper<Turning, f64, 3>) -> [f64; 2] {
+    let saved = stepper.save();
+    let mut page = [0_u8; 512];
+    let length = saved.to_le_bytes_into(&mut page).expect("room");
+    let (words, _) = page[..length].as_chunks::<8>();
+    let number = |index: usize| f64::from_le_bytes(words[index]);
+    let phase = Turning::<f64>::VARIABLES.iter().position(|entry| entry.name.starts_with("motor"));
+    let (phase, values) = (phase.expect("a phase"), saved.values().len());
+    // Behind version, numbers and name stand three turns; a place has its time, three coordinates and the values.
+    [6, 6 + 4 + values].map(|place| number(place + 1) - number(place + 4 + phase))
+}
+
 #[test]
 fn a_crank_that_ends_its_turns_at_a_change_point_keeps_its_assembly() {
     let mut random = Random::new(9);
@@ -105,6 +119,8 @@ fn a_crank_that_ends_its_turns_at_a_change_point_keeps_its_assembly() {
                     (alone.q()[0] + alone.turns()[0] as f64 * TAU - angle).abs() < 1e-10,
                     "{run}, {index}"
                 );
+                let [at, from] = behind_phases(&alone);
+                assert!((at - from).abs() < 1e-9, "{run}, {index}: {at} {from}");
                 for (lane, step) in batch.advance_to([t; 2]).into_iter().enumerate() {
                     assert!(step.is_ok(), "{}, run {run}, lane {lane}, step {index}: {step:?}", linkage.name);
                     let q = batch.q().map(|q| q.0[lane]);
