@@ -116,6 +116,8 @@ fn a_lane_that_failed_begins_where_it_was_solved() {
                 );
                 let led = batch.stepper(lane).expect("a lane");
                 assert_eq!(led.passages(), stepper.passages(), "{k}, lane {lane}");
+                // Those of the position, not those of a step that failed.
+                assert_eq!(led.save().values(), stepper.save().values(), "{k}, lane {lane}");
                 (failed, moved) = (failed + u32::from(step.is_err()), moved + u32::from(step.is_ok()));
             }
         }
