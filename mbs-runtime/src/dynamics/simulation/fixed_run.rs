@@ -13,9 +13,6 @@ use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::motion;
 
-/// Parts that contacts may cut a step of fixed size into.
-pub(super) const MOST_PARTS: u32 = 8;
-
 /// A step of fixed size that is not taken yet.
 pub(super) struct Ahead<R, P, const N: usize, const M: usize, Z> {
     from: Fresh<R, N, M, Z>,

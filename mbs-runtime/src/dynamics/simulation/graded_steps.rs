@@ -2,10 +2,12 @@
 
 use crate::dynamics::model::method::Method;
 use crate::dynamics::simulation::Simulation;
-use crate::dynamics::simulation::fixed_run::MOST_PARTS;
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::{Dynamic, Gap};
 use crate::scalar::number::Real;
+
+/// Parts that contacts may cut a step of fixed size into.
+const MOST_PARTS: u32 = 8;
 
 /// Parts that a graded step is taken in at most: one of √τ at ten steps a span has four, in each of several contacts.
 const MOST_GRADED_PARTS: u32 = 64;
@@ -66,7 +68,7 @@ where
         let (zero, one, two) = (R::constant(0.0), R::constant(1.0), R::constant(2.0));
         // A step that is none is refused as it was asked for.
         let ContactSteps::Graded(span) = self.contact_steps else { return rest };
-        if !(zero < rest) {
+        if rest <= zero || !rest.is_finite() {
             return rest;
         }
         // One part of the span is no less than the span.
