@@ -173,7 +173,7 @@ fn ends(valvetrain: &Valvetrain) -> impl Iterator<Item = f64> {
 
 fn in_steps(valvetrain: &Valvetrain, steps: u32, locates: bool) -> Result<Vec<f64>, mbs_runtime::Failure> {
     let method = Explicit::new(RungeKutta4, Projection::default());
-    let run = Simulation::start_from_text(valvetrain.clone(), method, 0.0)?.without_work();
+    let run = Simulation::start_from_text(*valvetrain, method, 0.0)?.without_work();
     let mut run = if locates { run } else { run.without_located_contacts() };
     let legs = ends(valvetrain).map(|until| run.step_to(until, steps).map(|()| run.q()[2]));
     legs.collect()
@@ -185,7 +185,7 @@ fn adaptive<I: Embedded + Default>(
     locates: bool,
 ) -> Result<Vec<f64>, mbs_runtime::Failure> {
     let method: Explicit<I, Projection> = Explicit::default();
-    let run = Simulation::start_from_text(valvetrain.clone(), method, 0.0)?.without_work();
+    let run = Simulation::start_from_text(*valvetrain, method, 0.0)?.without_work();
     let run = if locates { run } else { run.without_located_contacts() };
     let mut run = run.with_tolerance(Tolerance::new(tolerance));
     let legs = ends(valvetrain).map(|until| run.advance_to(until).map(|()| run.q()[2]));
