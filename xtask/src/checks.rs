@@ -101,6 +101,14 @@ fn oldest() -> Result<(), String> {
     step(check.env("CARGO_TARGET_DIR", crate::shell::target().join(OLDEST)))
 }
 
+/// Benches against peers, with their packages.
+const BENCHES: [(&str, &str); 4] = [
+    ("mbs-tests", "kinematics"),
+    ("mbs-tests", "dynamics"),
+    ("mbs-tests", "linkages"),
+    ("mbs-motions", "valvetrain"),
+];
+
 /// All benches against peers; `options` are theirs.
 ///
 /// # Errors
@@ -108,8 +116,8 @@ fn oldest() -> Result<(), String> {
 pub fn bench(options: &[&str]) -> Result<(), String> {
     need("python3", "install Python 3.11 or newer with venv")?;
     need("cc", "install a C compiler")?;
-    for bench in ["kinematics", "dynamics", "linkages"] {
-        let mut command = command("cargo", &["bench", "-p", "mbs-tests", "--bench", bench, "--"]);
+    for (package, bench) in BENCHES {
+        let mut command = command("cargo", &["bench", "-p", package, "--bench", bench, "--"]);
         step(command.args(options).current_dir(root()))?;
     }
     Ok(())

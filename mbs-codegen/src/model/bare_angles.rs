@@ -93,5 +93,5 @@ fn is_linear(code: &[Instruction]) -> bool {
 
 /// `true` for the unit of an angle.
 pub fn is_of_angles(unit: &Unit) -> bool {
-    matches!(unit.factors.as_slice(), [(symbol, 1)] if matches!(symbol.text.as_str(), "rad" | "turn"))
+    matches!(unit.factors.as_slice(), [(symbol, 1.0)] if matches!(symbol.text.as_str(), "rad" | "turn"))
 }

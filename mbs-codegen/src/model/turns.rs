@@ -12,6 +12,6 @@ pub(super) fn turning(kind: &Type) -> (Cow<'_, Type>, bool) {
     }
     let span = kind.unit.span;
     let radian = Name { text: "rad".into(), span };
-    let unit = Unit { factors: vec![(radian, 1)], text: "rad".into(), span };
+    let unit = Unit { factors: vec![(radian, 1.0)], text: "rad".into(), span };
     (Cow::Owned(Type { unit, shape: kind.shape.clone() }), true)
 }

@@ -108,20 +108,20 @@ pub fn component_at(code: &[Instruction], span: Span) -> &[Instruction] {
 /// A unit of symbols, powers, products and quotients.
 pub fn parsed(text: &str, span: Span) -> Option<Unit> {
     let mut factors = Vec::new();
-    let mut sign = 1;
+    let mut sign = 1.0;
     let mut rest = text;
     loop {
         let end = rest.find(['*', '/']).unwrap_or(rest.len());
         let (factor, behind) = rest.split_at_checked(end)?;
         let (symbol, power) = match factor.split_once('^') {
-            Some((symbol, power)) => (symbol, power.parse::<i32>().ok()?),
-            None => (factor, 1),
+            Some((symbol, power)) => (symbol, power.parse::<f64>().ok()?),
+            None => (factor, 1.0),
         };
         if symbol != "1" {
             factors.push((Name { text: symbol.to_owned(), span }, sign * power));
         }
         let Some(operator) = behind.chars().next() else { break };
-        sign = if operator == '*' { 1 } else { -1 };
+        sign = if operator == '*' { 1.0 } else { -1.0 };
         rest = behind.get(1..)?;
     }
     Some(Unit { factors, text: text.to_owned(), span })

@@ -17,6 +17,7 @@ pub struct Dimension([i16; 8]);
 
 const BASE: [&str; 8] = ["m", "kg", "s", "A", "K", "mol", "cd", "cycle"];
 const WHOLE: i16 = 60;
+const HALF: i16 = WHOLE / 2;
 const CYCLE: usize = 7;
 
 impl Dimension {
@@ -114,7 +115,7 @@ impl Dimension {
                 diagnostics.report(symbol.span, message, help);
             }
             let base = coherent.or_else(|| with_suffix(1.0, &symbol.text).ok().map(|(_, meant)| meant));
-            let power = base.and_then(|base| base.power(f64::from(*exponent)));
+            let power = base.and_then(|base| base.power(*exponent));
             dimension = dimension.zip(power).map(|(product, power)| product.times(power));
         }
         dimension
@@ -183,7 +184,7 @@ fn unknown_unit(symbol: &str) -> (String, String) {
 ///
 /// Factors and divisors are multiplied apart, so that `1 [km/h]` is rounded once.
 pub fn in_unit(value: f64, unit: &ast::Unit) -> Result<(f64, Dimension), (Span, String, String)> {
-    if let [(symbol, 1)] = unit.factors.as_slice() {
+    if let [(symbol, 1.0)] = unit.factors.as_slice() {
         return with_suffix(value, &symbol.text).map_err(|(message, help)| (symbol.span, message, help));
     }
     let (mut factor, mut divisor, mut dimension) = (1.0, 1.0, Dimension::NUMBER);
@@ -194,20 +195,27 @@ pub fn in_unit(value: f64, unit: &ast::Unit) -> Result<(f64, Dimension), (Span, 
         };
         let known = SUFFIXES.iter().find(|(known, ..)| *known == symbol.text);
         let (times, over) = known.map_or((1.0, 1.0), |(_, times, over, _)| (*times, *over));
-        let (times, over) = if *exponent < 0 { (over, times) } else { (times, over) };
-        let count = i32::try_from(exponent.unsigned_abs()).unwrap_or(i32::MAX);
-        factor *= f64::powi(times, count);
-        divisor *= f64::powi(over, count);
-        let power = base.power(f64::from(*exponent)).ok_or_else(|| {
+        let (times, over) = if *exponent < 0.0 { (over, times) } else { (times, over) };
+        factor *= raised_to(times, exponent.abs());
+        divisor *= raised_to(over, exponent.abs());
+        let raised = base.power(*exponent).ok_or_else(|| {
             (
                 symbol.span,
                 format!("`{}` has an exponent that is too large", unit.text),
                 "write smaller exponents".into(),
             )
         })?;
-        dimension = dimension.times(power);
+        dimension = dimension.times(raised);
     }
     Ok((value * factor / divisor, dimension))
+}
+
+/// A power, by multiplication where the exponent is an integer.
+fn raised_to(base: f64, exponent: f64) -> f64 {
+    let whole = exponent.trunc();
+    let root = if whole == exponent { 1.0 } else { base.sqrt() };
+    // At most 12 times the 12 of as many parentheses: exact in an `i32`.
+    f64::powi(base, whole as i32) * root
 }
 
 /// Value and dimension of a number with a suffix; `Err` holds message and cure.
@@ -270,6 +278,7 @@ fn power(base: &str, sixtieths: i16) -> String {
     match (sixtieths / WHOLE, sixtieths % WHOLE) {
         (1, 0) => base.into(),
         (whole, 0) => format!("{base}^{whole}"),
+        (whole, HALF) => format!("{base}^{whole}.5"),
         _ => {
             let divisor = (1..=WHOLE).rev().find(|d| sixtieths % d == 0 && WHOLE % d == 0).unwrap_or(1);
             format!("{base}^({}/{})", sixtieths / divisor, WHOLE / divisor)
@@ -293,7 +302,7 @@ mod tests {
 
     #[test]
     fn compound_units_multiply_the_factors_of_their_symbols() {
-        let of = |factors: &[(&str, i32)], value: f64| {
+        let of = |factors: &[(&str, f64)], value: f64| {
             let span = Span::call_site();
             let factors = factors
                 .iter()
@@ -302,11 +311,14 @@ mod tests {
             in_unit(value, &ast::Unit { factors, text: String::new(), span }).expect("known")
         };
         let area = Dimension::METRE.power(2.0).expect("area");
-        assert_eq!(of(&[("mm", 2)], 4.0), (4e-6, area));
-        assert_eq!(of(&[("km", 1), ("h", -1)], 36.0), (10.0, Dimension::METRE.over(Dimension::SECOND)));
-        assert_eq!(of(&[("N", 1), ("mm", -2)], 1.0), (1e6, Dimension::NEWTON.over(area)));
-        assert_eq!(of(&[("deg", 1), ("s", -1)], 180.0), (PI, Dimension::NUMBER.over(Dimension::SECOND)));
+        assert_eq!(of(&[("mm", 2.0)], 4.0), (4e-6, area));
+        assert_eq!(of(&[("km", 1.0), ("h", -1.0)], 36.0), (10.0, Dimension::METRE.over(Dimension::SECOND)));
+        assert_eq!(of(&[("N", 1.0), ("mm", -2.0)], 1.0), (1e6, Dimension::NEWTON.over(area)));
+        assert_eq!(of(&[("deg", 1.0), ("s", -1.0)], 180.0), (PI, Dimension::NUMBER.over(Dimension::SECOND)));
         assert_eq!(of(&[], 2.0), (2.0, Dimension::NUMBER));
+        // 1 N/cm^1.5 is 1000 N/m^1.5.
+        let rise = Dimension::NEWTON.over(Dimension::METRE.power(1.5).expect("halves"));
+        assert_eq!(of(&[("N", 1.0), ("cm", -1.5)], 1.0), (1e3, rise));
     }
 
     #[test]
@@ -315,7 +327,8 @@ mod tests {
         assert_eq!(newton.to_string(), "N");
         assert_eq!(newton.times(Dimension::METRE).to_string(), "N*m");
         assert_eq!(Dimension::METRE.over(Dimension::SECOND).to_string(), "m/s");
-        assert_eq!(Dimension::METRE.power(0.5).expect("half").to_string(), "m^(1/2)");
+        assert_eq!(Dimension::METRE.power(0.5).expect("half").to_string(), "m^0.5");
+        assert_eq!(Dimension::METRE.power(1.0 / 3.0).expect("third").to_string(), "m^(1/3)");
         assert_eq!(Dimension::NUMBER.over(Dimension::SECOND).to_string(), "1/s");
         assert_eq!(Dimension::METRE.power(1.0 / 7.0), None);
     }

@@ -82,8 +82,8 @@ impl Expression {
 /// A unit as written, parentheses resolved: a product of symbols with exponents.
 #[derive(Clone, Debug)]
 pub struct Unit {
-    /// Symbols and exponents; `1` is left out.
-    pub factors: Vec<(Name, i32)>,
+    /// Symbols and exponents, integers or halves of integers; `1` is left out.
+    pub factors: Vec<(Name, f64)>,
     /// Without spaces, as written.
     pub text: String,
     /// Its first token.
@@ -93,7 +93,7 @@ pub struct Unit {
 impl Unit {
     /// A unit of one symbol.
     pub fn of_symbol(symbol: &str, span: Span) -> Self {
-        Unit { factors: vec![(Name { text: symbol.to_owned(), span }, 1)], text: symbol.to_owned(), span }
+        Unit { factors: vec![(Name { text: symbol.to_owned(), span }, 1.0)], text: symbol.to_owned(), span }
     }
 }
 

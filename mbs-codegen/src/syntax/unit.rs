@@ -114,8 +114,8 @@ pub fn unit(parser: &mut Parser<'_>) -> Read<Unit> {
 fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
     let mut unit = Unit { factors: Vec::new(), text: String::new(), span: parser.span() };
     // Index of the first factor within each open parenthesis, and the sign of its exponents.
-    let mut open: Vec<(usize, i32)> = Vec::new();
-    let mut sign = 1;
+    let mut open: Vec<(usize, f64)> = Vec::new();
+    let mut sign = 1.0;
     // Place of an operator between two units that is missing, or a dot.
     let mut joined: Option<(Span, bool)> = None;
     loop {
@@ -125,7 +125,7 @@ fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
                 parser.skip(1);
                 unit.text.push('(');
                 open.push((begin, sign));
-                sign = 1;
+                sign = 1.0;
                 continue;
             }
             TokenKind::Literal(one) if one == "1" => {
@@ -135,7 +135,7 @@ fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
             TokenKind::Identifier(_) => {
                 let symbol = parser.name(help)?;
                 unit.text += &symbol.text;
-                unit.factors.push((symbol, 1));
+                unit.factors.push((symbol, 1.0));
             }
             _ => return parser.expected("a unit", help),
         }
@@ -152,7 +152,7 @@ fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
         if is_dot || at_unit(parser) {
             joined.get_or_insert((span, is_dot));
             parser.skip(usize::from(is_dot));
-            sign = 1;
+            sign = 1.0;
             unit.text.push('*');
             continue;
         }
@@ -164,7 +164,7 @@ fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
             }
             return if open.is_empty() { Ok(unit) } else { parser.expected("`)`", help) };
         }
-        sign = if multiplies { 1 } else { -1 };
+        sign = if multiplies { 1.0 } else { -1.0 };
         unit.text.push(if multiplies { '*' } else { '/' });
     }
 }
@@ -183,7 +183,7 @@ fn report_joined(parser: &mut Parser<'_>, span: Span, is_dot: bool, unit: &Unit)
     };
     let written = written(&unit.factors);
     let help = match unit.factors.as_slice() {
-        [(first, 1), (second, 1)] => {
+        [(first, 1.0), (second, 1.0)] => {
             format!("write `{written}` for the product, `{}/{}` for the quotient", first.text, second.text)
         }
         _ => format!("write `{written}`"),
@@ -192,19 +192,20 @@ fn report_joined(parser: &mut Parser<'_>, span: Span, is_dot: bool, unit: &Unit)
 }
 
 /// A unit as products and quotients of its factors: `rad/s`, `N*m*s`.
-fn written(factors: &[(Name, i32)]) -> String {
-    let power = |name: &Name, exponent: i32| match exponent.abs() {
-        1 => name.text.clone(),
+fn written(factors: &[(Name, f64)]) -> String {
+    let power = |name: &Name, exponent: f64| match exponent.abs() {
+        1.0 => name.text.clone(),
         power => format!("{}^{power}", name.text),
     };
-    let over: Vec<String> = factors.iter().filter(|(_, e)| *e > 0).map(|(name, e)| power(name, *e)).collect();
-    let under = factors.iter().filter(|(_, e)| *e < 0).map(|(name, e)| format!("/{}", power(name, *e)));
+    let over: Vec<String> =
+        factors.iter().filter(|(_, e)| *e > 0.0).map(|(name, e)| power(name, *e)).collect();
+    let under = factors.iter().filter(|(_, e)| *e < 0.0).map(|(name, e)| format!("/{}", power(name, *e)));
     let over = if over.is_empty() { "1".into() } else { over.join("*") };
     under.fold(over, |text, divisor| text + &divisor)
 }
 
 /// Reads `^ exponent` and applies it, and the sign of a division, to the factors from `begin` on.
-fn finish_factor(parser: &mut Parser<'_>, unit: &mut Unit, begin: usize, sign: i32) -> Read<()> {
+fn finish_factor(parser: &mut Parser<'_>, unit: &mut Unit, begin: usize, sign: f64) -> Read<()> {
     let stars = parser.at_pair('*', '*');
     if stars {
         foreign::two_stars(parser);
@@ -217,7 +218,7 @@ fn finish_factor(parser: &mut Parser<'_>, unit: &mut Unit, begin: usize, sign: i
             unit.text.push('-');
         }
         let power = match parser.peek() {
-            TokenKind::Literal(text) => text.parse().ok().filter(|power: &i32| (0..=12).contains(power)),
+            TokenKind::Literal(text) => exponent_of(text),
             _ => None,
         };
         let Some(power) = power else { return no_exponent(parser, unit, begin) };
@@ -226,9 +227,16 @@ fn finish_factor(parser: &mut Parser<'_>, unit: &mut Unit, begin: usize, sign: i
         exponent *= if negative { -power } else { power };
     }
     for (_, factor) in unit.factors.iter_mut().skip(begin) {
-        *factor = factor.saturating_mul(exponent);
+        *factor *= exponent;
     }
     Ok(())
+}
+
+/// An exponent as written: an integer up to 12 or half of one.
+fn exponent_of(text: &str) -> Option<f64> {
+    let whole = |digits: &str| digits.parse::<u8>().ok().map(f64::from);
+    let half = || text.strip_suffix(".5").and_then(whole).map(|below| below + 0.5);
+    whole(text).or_else(half).filter(|power| *power <= 12.0)
 }
 
 /// Reports what stands at the cursor in place of an exponent, behind the factors from `begin` on.
@@ -244,11 +252,12 @@ fn no_exponent(parser: &mut Parser<'_>, unit: &Unit, begin: usize) -> Read<()> {
             format!("`{base}^{number}` is beyond the largest exponent"),
             "exponents of units reach up to 12".into(),
         ),
-        _ if number.is_empty() => {
-            ("an exponent of a unit is an integer".into(), format!("write it behind the `^`: `{base}^2`"))
-        }
+        _ if number.is_empty() => (
+            "an exponent of a unit is an integer or a half".into(),
+            format!("write it behind the `^`: `{base}^2`"),
+        ),
         _ => (
-            "an exponent of a unit is an integer".into(),
+            "an exponent of a unit is an integer or a half".into(),
             format!("raise a quantity to other powers: `(1 [{base}])^{exponent}`"),
         ),
     };

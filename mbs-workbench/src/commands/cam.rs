@@ -47,9 +47,10 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
         Some(size) => {
             let size = if size == Sizes::Base { Size::Base } else { Size::Pad };
             // From a tenth to a hundred times what the follower moves, or is away.
-            let scale = follower
-                .pivot()
-                .map_or_else(|| arguments.height().unwrap_or(0.01), |[x, y]| 0.5 * x.hypot(y));
+            let scale = follower.pivot().map_or_else(
+                || arguments.of_law.height(arguments.turns()).unwrap_or(0.01),
+                |[x, y]| 0.5 * x.hypot(y),
+            );
             let cam = Cam { lift: lift.clone(), follower, direction };
             Some(least_size(&cam, &limits, size, [0.03 * scale, 100.0 * scale])?)
         }
@@ -111,8 +112,8 @@ fn recover(
 ) -> Result<(), CommandError> {
     let named = |message: String| CommandError::Failed(format!("{}: {message}", arguments.law));
     let bytes = fs::read(&arguments.law).map_err(|error| named(format!("cannot be read: {error}")))?;
-    let points =
-        read_unordered(&bytes, arguments.columns.as_ref()).map_err(|fault| named(fault.to_string()))?;
+    let points = read_unordered(&bytes, arguments.of_law.columns.as_ref())
+        .map_err(|fault| named(fault.to_string()))?;
     let pairs: Vec<[f64; 2]> = points.x.iter().zip(&points.y).map(|(x, y)| [*x, *y]).collect();
     let profile = match [&points.columns.x.1, &points.columns.y.1].map(|unit| unit.coherent.as_str()) {
         ["rad", "m"] => Profile::polar(&pairs),

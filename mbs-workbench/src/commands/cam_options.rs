@@ -1,19 +1,16 @@
-//! Options of `mbs cam`: law, follower, limits.
+//! Options of `mbs cam`: follower and limits.
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use mbs_codegen::quantity;
 
 use super::CommandError;
+use super::law_options::{LawOptions, angle, in_unit, length, number, usage};
 use crate::cams::CamError;
-use crate::cams::bspline::text;
 use crate::cams::follower::{Follower, Side};
-use crate::cams::lift::{FLANKS, Lift};
+use crate::cams::lift::Lift;
 use crate::cams::limits::{Limits, Load};
-use crate::mismatch::nearest;
-use crate::tables::{Columns, Spline, SplineKind, close_period, constant, read};
+use crate::tables::constant;
 
 /// Kind of follower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -61,36 +58,11 @@ pub struct Arguments {
     /// Kind of follower
     #[arg(long, value_enum)]
     pub follower: Kinds,
-    /// Largest lift, of an oscillating follower its angle
-    #[arg(long, value_name = "11mm")]
-    lift: Option<String>,
-    /// From rest to rest, of an even-power law
-    #[arg(long, value_name = "160deg", value_parser = angle)]
-    duration: Option<f64>,
-    /// Duration of the rise
-    #[arg(long, value_name = "90deg", value_parser = angle)]
-    rise: Option<f64>,
-    /// Duration of the dwell at full lift [default: 0deg]
-    #[arg(long, value_name = "30deg", value_parser = angle)]
-    dwell: Option<f64>,
-    /// Duration of the return [default: that of the rise]
-    #[arg(long = "return", value_name = "90deg", value_parser = angle)]
-    back: Option<f64>,
-    /// Height and duration of ramps of constant velocity before and after the lift
-    #[arg(long, value_name = "0.1mm,15deg")]
-    ramp: Option<String>,
-    /// Polydyne correction s + c s″, c = m ω²/k
-    #[arg(long, value_name = "C", value_parser = number)]
-    polydyne: Option<f64>,
+    #[command(flatten)]
+    pub of_law: LawOptions,
     /// The file is a measured profile about the cam's centre, polar as "deg, mm" or x and y as "mm, mm": find its lift
     #[arg(long, conflicts_with_all = ["lift", "least", "rust", "polydyne"])]
     pub measured: bool,
-    /// Units of the columns of a table [default: those in the header]
-    #[arg(long, value_name = "\"deg, mm\"", value_parser = Columns::parse)]
-    pub columns: Option<Columns>,
-    /// Knots of a least-squares fit to a table [default: through every point]
-    #[arg(long, value_name = "N", value_parser = super::positive)]
-    knots: Option<usize>,
     /// Radius of the base circle
     #[arg(long, value_name = "17mm", value_parser = length)]
     base: Option<f64>,
@@ -159,33 +131,12 @@ pub struct Arguments {
     pub out: Option<PathBuf>,
 }
 
-fn in_unit(text: &str, unit: &str, example: &str) -> Result<f64, String> {
-    let found = quantity(text.trim()).map_err(|(message, help)| format!("{message}; {help}"))?;
-    if found.unit.is_none() && found.value != 0.0 {
-        return Err(format!("a unit is needed, as in `{example}`"));
-    }
-    let fits = found.fits(unit) && found.value.is_finite();
-    if fits { Ok(found.value) } else { Err(format!("a quantity like `{example}` is needed")) }
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    in_unit(text, "m", "12mm")
-}
-
-fn angle(text: &str) -> Result<f64, String> {
-    in_unit(text, "rad", "30deg")
-}
-
 fn force(text: &str) -> Result<f64, String> {
     in_unit(text, "N", "800N")
 }
 
 fn pressure(text: &str) -> Result<f64, String> {
     in_unit(text, "Pa", "900MPa")
-}
-
-fn number(text: &str) -> Result<f64, String> {
-    super::chosen::finite(text)
 }
 
 fn point(text: &str) -> Result<[f64; 2], String> {
@@ -201,10 +152,6 @@ fn constant_name(text: &str) -> Result<String, String> {
     }
 }
 
-fn usage(message: impl Into<String>) -> CommandError {
-    CommandError::Usage(message.into())
-}
-
 impl From<CamError> for CommandError {
     fn from(error: CamError) -> Self {
         CommandError::Failed(error.to_string())
@@ -214,25 +161,6 @@ impl From<CamError> for CommandError {
 impl Arguments {
     pub fn turns(&self) -> bool {
         matches!(self.follower, Kinds::OscillatingFlat | Kinds::OscillatingRoller)
-    }
-
-    /// The largest lift in SI; an angle for an arm, a length elsewhere.
-    pub fn height(&self) -> Result<f64, CommandError> {
-        let text = self.lift.as_deref().ok_or_else(|| {
-            usage(format!(
-                "a law needs its lift\nhelp: say `--lift {}`",
-                if self.turns() { "18deg" } else { "11mm" }
-            ))
-        })?;
-        let read = if self.turns() { angle(text) } else { length(text) };
-        read.map_err(|why| {
-            let of = if self.turns() {
-                "the lift of an oscillating follower is the angle of its arm"
-            } else {
-                "the lift is a length"
-            };
-            usage(format!("`--lift {text}`: {of}; {why}"))
-        })
     }
 
     /// Width of the noise in a table of the lift.
@@ -246,94 +174,7 @@ impl Arguments {
     }
 
     pub fn law(&self) -> Result<(Lift, Vec<u8>), CommandError> {
-        let needed = |value: Option<f64>, option: &str| {
-            value.ok_or_else(|| usage(format!("the law `{}` needs `{option}`", self.law)))
-        };
-        let lift = if let Some(list) = self.law.strip_prefix("even:") {
-            let read: Result<Vec<u32>, _> = list.split(',').map(|p| p.trim().parse::<u32>()).collect();
-            let exponents = read
-                .map_err(|_| usage(format!("`{list}` are no exponents\nhelp: write `even:2,6,8,10,12`")))?;
-            Lift::hump(&exponents, self.height()?, needed(self.duration, "--duration 160deg")?)?
-        } else if let Some((_, flank)) = FLANKS.iter().find(|(name, _)| *name == self.law) {
-            let rise = needed(self.rise, "--rise 90deg")?;
-            Lift::flanks(
-                *flank,
-                self.height()?,
-                [rise, self.dwell.unwrap_or(0.0), self.back.unwrap_or(rise)],
-            )?
-        } else if let Some(text) = self.law.strip_prefix("bspline:") {
-            Lift::bspline(text::parse(&self.bspline(text)?, self.turns())?)?
-        } else {
-            return self.table();
-        };
-        let lift = match &self.ramp {
-            None => lift,
-            Some(text) => {
-                let example = if self.turns() { "0.2deg,15deg" } else { "0.1mm,15deg" };
-                let wrong =
-                    |why: String| usage(format!("`--ramp {text}`: {why}\nhelp: write `--ramp {example}`"));
-                let (height, duration) = text
-                    .split_once(',')
-                    .ok_or_else(|| wrong("height and duration are needed".to_string()))?;
-                let height = if self.turns() { angle(height) } else { length(height) };
-                lift.with_ramps(height.map_err(wrong)?, angle(duration).map_err(wrong)?)?
-            }
-        };
-        Ok((self.corrected(lift)?, self.law.clone().into_bytes()))
-    }
-
-    /// The text of a B-spline law, of the command line or in a file.
-    fn bspline(&self, text: &str) -> Result<String, CommandError> {
-        if self.lift.is_some() {
-            return Err(usage("the constraints of a B-spline have its lift\nhelp: leave out `--lift`"));
-        }
-        if text.contains([';', ' ']) {
-            return Ok(text.to_string());
-        }
-        let named = |why: String| CommandError::Failed(format!("{text}: {why}"));
-        fs::read_to_string(text).map_err(|error| {
-            let help = "help: name a file, or write the law itself as `bspline:degree 5; knots …; at …`";
-            named(format!("cannot be read: {error}\n{help}"))
-        })
-    }
-
-    fn corrected(&self, lift: Lift) -> Result<Lift, CommandError> {
-        Ok(match self.polydyne {
-            None => lift,
-            Some(c) => lift.with_polydyne(c)?,
-        })
-    }
-
-    /// A lift from a file.
-    fn table(&self) -> Result<(Lift, Vec<u8>), CommandError> {
-        let path = PathBuf::from(&self.law);
-        if path.extension().is_none() {
-            let known = FLANKS.iter().map(|(name, _)| *name).chain(["even:2,6,8,10,12"]);
-            let names: Vec<&str> = known.collect();
-            let near = nearest(&self.law, names.iter().copied());
-            let hint = near.map_or_else(
-                || format!("laws are {}", names.join(", ")),
-                |name| format!("did you mean `{name}`?"),
-            );
-            return Err(usage(format!("`{}` is no law and no file\nhelp: {hint}", self.law)));
-        }
-        let named = |message: String| CommandError::Failed(format!("{}: {message}", self.law));
-        let bytes = fs::read(&path).map_err(|error| named(format!("cannot be read: {error}")))?;
-        let mut points = read(&bytes, self.columns.as_ref()).map_err(|fault| named(fault.to_string()))?;
-        let (across, up) = (&points.columns.x.1, &points.columns.y.1);
-        let expected = if self.turns() { "rad" } else { "m" };
-        if across.coherent != "rad" || up.coherent != expected {
-            let why = format!(
-                "a lift in {} over an angle is needed, not {} over {}",
-                expected, up.name, across.name
-            );
-            return Err(named(format!("{why}\nhelp: name the columns, as `--columns \"deg, mm\"`")));
-        }
-        let period = core::f64::consts::TAU;
-        close_period(&mut points, period).map_err(|fault| named(fault.to_string()))?;
-        let spline = Spline::fit(&points.x, &points.y, SplineKind::PeriodicQuintic(period), self.knots);
-        let spline = spline.map_err(|error| named(format!("{error}\nhelp: another number of `--knots`")))?;
-        Ok((self.corrected(Lift::table(spline)?)?, bytes))
+        self.of_law.law(&self.law, self.turns())
     }
 
     pub fn the_follower(&self) -> Result<Follower, CommandError> {

@@ -21,6 +21,7 @@ pub mod fmt;
 pub mod hard_case_list;
 pub mod hard_cases;
 pub mod latex;
+mod law_options;
 pub mod list;
 mod measured;
 pub mod new;

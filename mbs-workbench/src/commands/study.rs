@@ -10,6 +10,7 @@ use super::CommandError;
 use super::assignment::{Assignment, assignment};
 use super::chosen::{finite, write_file};
 use super::document::Output;
+use super::law_options;
 use crate::card::Card;
 use crate::catalogue::Catalogue;
 use crate::output::origin::Origin;
@@ -26,6 +27,9 @@ pub struct Arguments {
     /// Set a parameter of the study, in its unit or with a unit of its own
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     param: Vec<Assignment>,
+    /// Lift law in place of the study's own, in the words of `mbs cam`: `lift.csv`, `"4567 --lift 8mm --rise 75deg"`
+    #[arg(long, value_name = "LAW")]
+    law: Option<String>,
     /// Folder of the page [default: mbs/study/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -49,6 +53,12 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     }
     if let Some(speed) = arguments.speed {
         values.set("speed", speed * core::f64::consts::PI / 30.0).map_err(usage)?;
+    }
+    if let Some(law) = &arguments.law {
+        if !study.takes_law {
+            return Err(CommandError::Usage(format!("the study of `{name}` has no lift law")));
+        }
+        values.law = Some(law_options::written(law)?);
     }
     let report = (study.run)(&values, &mut |step| {
         // For a reader who waits.
@@ -107,7 +117,8 @@ fn command(arguments: &Arguments, name: &str) -> String {
     let speed = arguments.speed.map(|speed| format!(" --speed {speed}")).unwrap_or_default();
     let parameters: String =
         arguments.param.iter().map(|one| format!(" --param {}", one.written())).collect();
-    format!("mbs study {name}{speed}{parameters}")
+    let law = arguments.law.as_ref().map(|law| format!(" --law \"{law}\"")).unwrap_or_default();
+    format!("mbs study {name}{speed}{law}{parameters}")
 }
 
 fn sections(report: &Report) -> Vec<serde_json::Value> {

@@ -9,8 +9,8 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use self::outlines::{
-    BAR, DURATION, Path, angle, coil, disc, distance, face, fill, joint, length, line, polygon, profile,
-    rail, stroke, support, turning, written,
+    BAR, DURATION, Path, angle, arrow, coil, disc, distance, face, fill, joint, length, line, polygon,
+    profile, rail, stroke, support, turning, written,
 };
 use super::places::PlaceCurve;
 use super::svg::{COLOURS, open};
@@ -30,13 +30,27 @@ const MARGIN: f64 = 36.0;
 /// # Errors
 /// A message where the motion has no second instant, a point is missing, or a shape has no animated form.
 pub fn animation(shapes: &[Value], motion: &Motion, places: &[PlaceCurve]) -> Result<String, String> {
+    animation_of(FRAMES, shapes, motion, places)
+}
+
+/// The same in at most this many positions. A shape of the kind `arrow` points from the first of its `points` to the second; where both are
+/// one point a ring marks it.
+///
+/// # Errors
+/// As [`animation`].
+pub fn animation_of(
+    frames: usize,
+    shapes: &[Value],
+    motion: &Motion,
+    places: &[PlaceCurve],
+) -> Result<String, String> {
     let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) else {
         return Err("the motion has no instant".to_string());
     };
     if motion.time.len() < 2 {
         return Err("a position of rest has no motion to draw".to_string());
     }
-    let mut stage = Stage::new(shapes, motion, places)?;
+    let mut stage = Stage::new(frames, shapes, motion, places)?;
     for shape in shapes {
         stage.draw(shape)?;
     }
@@ -65,9 +79,14 @@ struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    fn new(shapes: &[Value], motion: &'a Motion, places: &'a [PlaceCurve]) -> Result<Self, String> {
+    fn new(
+        frames: usize,
+        shapes: &[Value],
+        motion: &'a Motion,
+        places: &'a [PlaceCurve],
+    ) -> Result<Self, String> {
         let last = motion.time.len() - 1;
-        let count = FRAMES.min(last);
+        let count = frames.clamp(1, last);
         let view = shapes.iter().find(|shape| shape["kind"] == "view").map(|shape| {
             ["right", "up"].map(|key| [0, 1, 2].map(|index| shape[key][index].as_f64().unwrap_or(0.0)))
         });
@@ -209,6 +228,7 @@ impl<'a> Stage<'a> {
                 let style = format!("{} fill-opacity=\"0.35\"", stroke(colour, 0.6 * BAR));
                 polygon(&mut self.bodies, &points, &style.replace("fill=\"none\"", &fill(colour)));
             }
+            "arrow" => arrow(&mut self.joints, &points[0], &points[1]),
             "spring" => line(&mut self.bodies, &coil(&points), &stroke("#555555", 2.0)),
             "face" => face(&mut self.bodies, &points, colour),
             "slider" => {
@@ -324,6 +344,21 @@ mod tests {
             "{svg}"
         );
         assert_eq!(svg.matches("type=\"rotate\"").count(), 2);
+    }
+
+    #[test]
+    fn an_arrow_that_has_no_length_is_a_ring() {
+        let mut motion = quarter();
+        motion.outputs.extend([output("F.0", [1.0, 0.0, 0.0]), output("F.1", [0.0; 3])]);
+        let bar = json!({"kind": "link", "points": ["O", "A"], "label": "crank"});
+        let svg = animation(&[bar, json!({"kind": "arrow", "points": ["O", "F"]})], &motion, &[]);
+        let svg = svg.expect("a picture");
+        assert!(svg.contains("attributeName=\"r\"") && svg.contains("values=\"0;5;5\""), "{svg}");
+        // Shaft and head in the first frame, one point in the others.
+        assert!(
+            svg.contains("<polygon points=\"36.0,442.5") && svg.contains(";36.0,444.0 36.0,444.0"),
+            "{svg}"
+        );
     }
 
     #[test]

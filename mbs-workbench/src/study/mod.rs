@@ -8,6 +8,7 @@ pub mod plot;
 
 use core::fmt;
 
+use crate::cams::lift::Lift;
 use crate::mismatch::nearest;
 
 /// A chain of computations of a card: `card!(…).studied_by(&STUDY)`.
@@ -17,6 +18,8 @@ pub struct Study {
     pub about: &'static str,
     /// Parameters that `--param` may change.
     pub parameters: &'static [Parameter],
+    /// `true` if `--law` may replace the lift law.
+    pub takes_law: bool,
     /// Makes the report; the second argument shows what is being computed.
     pub run: Run,
 }
@@ -39,12 +42,17 @@ pub struct Parameter {
 
 /// Values of all parameters of a study.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Values(Vec<(&'static str, f64)>);
+pub struct Values {
+    numbers: Vec<(&'static str, f64)>,
+    /// Lift law in place of the study's own.
+    pub law: Option<Lift>,
+}
 
 impl Values {
     /// Defaults of `study`.
     pub fn of(study: &Study) -> Self {
-        Values(study.parameters.iter().map(|parameter| (parameter.name, parameter.value)).collect())
+        let numbers = study.parameters.iter().map(|parameter| (parameter.name, parameter.value)).collect();
+        Values { numbers, law: None }
     }
 
     /// Sets a value in the unit of its parameter.
@@ -55,9 +63,9 @@ impl Values {
         if !value.is_finite() {
             return Err(StudyError(format!("`{name}` is not a finite number")));
         }
-        let known = || self.0.iter().map(|(name, _)| *name).collect::<Vec<_>>();
-        match self.0.iter().position(|(known, _)| *known == name) {
-            Some(at) => self.0[at].1 = value,
+        let known = || self.numbers.iter().map(|(name, _)| *name).collect::<Vec<_>>();
+        match self.numbers.iter().position(|(known, _)| *known == name) {
+            Some(at) => self.numbers[at].1 = value,
             None => {
                 let near = nearest(name, known());
                 let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
@@ -71,7 +79,7 @@ impl Values {
 
     /// Value of a parameter; NaN of one that the study does not have.
     pub fn get(&self, name: &str) -> f64 {
-        self.0.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
+        self.numbers.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
     }
 }
 
@@ -165,6 +173,7 @@ mod tests {
     const STUDY: Study = Study {
         about: "A study of a test.",
         parameters: &[Parameter { name: "speed", unit: "rad/s", value: 2.0, about: "of the cam" }],
+        takes_law: false,
         run: |_, _| Ok(Report::default()),
     };
 

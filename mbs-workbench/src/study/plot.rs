@@ -55,6 +55,70 @@ impl Curve {
     }
 }
 
+/// Intervals of one axis in rows, one a subject.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Timeline {
+    /// Heading of the picture.
+    pub caption: String,
+    /// Name and unit of the axis to the right.
+    pub x: String,
+    /// Both ends of the axis.
+    pub ends: [f64; 2],
+    /// Subjects with their intervals.
+    pub rows: Vec<(String, Vec<[f64; 2]>)>,
+}
+
+impl Timeline {
+    /// The rows as a picture.
+    pub fn picture(&self) -> Picture {
+        const ROW: f64 = 30.0;
+        const NAMES: f64 = 150.0;
+        let [low, high] = self.ends;
+        let x = |value: f64| NAMES + (value - low) / (high - low) * (WIDTH - NAMES - RIGHT);
+        let height = ROW * self.rows.len() as f64 + 40.0;
+        let bottom = height - 24.0;
+        let mut svg = format!(
+            "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"{}\">\n",
+            escaped(&self.caption)
+        );
+        for value in eighths(low, high) {
+            let at = x(value);
+            let _ = writeln!(
+                svg,
+                "<path class=\"grid\" d=\"M{at:.1} 16V{bottom:.1}\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                bottom + 17.0,
+                written(value)
+            );
+        }
+        for (index, (name, spans)) in self.rows.iter().enumerate() {
+            let top = 20.0 + ROW * index as f64;
+            let _ = writeln!(
+                svg,
+                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+                NAMES - 8.0,
+                top + 15.0,
+                escaped(name)
+            );
+            for [from, to] in spans {
+                let width = (x(*to) - x(*from)).max(0.8);
+                let _ = writeln!(
+                    svg,
+                    "<rect class=\"bar line{}\" x=\"{:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"20\"/>",
+                    index % 6,
+                    x(*from)
+                );
+            }
+        }
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.1}\" y=\"12\" text-anchor=\"end\">{}</text></svg>",
+            WIDTH - RIGHT,
+            escaped(&self.x)
+        );
+        Picture { caption: self.caption.clone(), svg }
+    }
+}
+
 /// About five round numbers between both ends.
 fn ticks(low: f64, high: f64) -> Vec<f64> {
     let rough = (high - low) / 5.0;
@@ -223,6 +287,16 @@ mod tests {
                 "{found:?}"
             );
         }
+    }
+
+    #[test]
+    fn intervals_are_bars_to_scale() {
+        let rows = vec![("seat".to_string(), vec![[-180.0, 0.0]]), ("cam".to_string(), Vec::new())];
+        let line = Timeline { ends: [-180.0, 180.0], rows, ..Timeline::default() };
+        let svg = line.picture().svg;
+        // Half of the 518 units between the names and the margin.
+        assert_eq!(svg.matches("class=\"bar").count(), 1);
+        assert!(svg.contains("x=\"150.0\" y=\"20.0\" width=\"259.0\""), "{svg}");
     }
 
     #[test]

@@ -152,7 +152,11 @@ impl Design {
     }
 
     /// The mechanism on other pitch curves, as tables of them.
-    pub fn moved_by(&self, opening: Curve, shutting: Curve) -> Desmo<Curve, Curve, f64, Kinematic> {
+    pub fn moved_by<F, G>(&self, opening: F, shutting: G) -> Desmo<F, G, f64, Kinematic>
+    where
+        F: Function<f64>,
+        G: Function<f64>,
+    {
         let arms = |rocker: &Rocker| {
             (rocker.pivot, apart(rocker.pivot, rocker.cam_pad), apart(rocker.pivot, rocker.valve_pad))
         };

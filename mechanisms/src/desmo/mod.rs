@@ -24,7 +24,7 @@
 //! | `helper` | spring on the closer that keeps the valve on its seat |
 //! | `guide` | friction of the valve's guide: c ṡ + F tanh(ṡ/v₀) |
 //! | `gravity` | weight of the valve |
-//! | `loads`, `books` | forces by name; work of the cam's torque, of contacts and guide |
+//! | `loads`, `closing_loads`, `books` | forces by name; work of the cam's torque, of contacts and guide |
 //! | `spring` | an ordinary valve spring |
 //!
 //! The pitch curves of both cams are functions of the text. [`Design`] makes them from a lift law, in closed form. Radii of pads are in
@@ -126,36 +126,35 @@ mechanism! {
         kinetic closer_turns = closer_inertia*der(closer)^2/2;
     }
     effect contacts {
-        /// Of K dⁿ the force at a depth of 1 m, so that K = 5e10 N/m^1.5.
-        param stiffness: N/m = 5e10;
+        param stiffness: N/m^1.5 = 5e10;
         param damping: s/m = 1.5;
         contact nose {
             gap: distance(opener_pad, opening_cam),
-            stiffness: stiffness,
+            stiffness: stiffness*sqrt(1m),
             exponent: 1.5,
             depth: 1m,
             damping: damping
         }
         contact tip {
             gap: s - opener_way + open_play,
-            stiffness: stiffness,
+            stiffness: stiffness*sqrt(1m),
             exponent: 1.5,
             depth: 1m,
             damping: damping
         }
-        contact seat { gap: s, stiffness: stiffness, exponent: 1.5, depth: 1m, damping: damping }
+        contact seat { gap: s, stiffness: stiffness*sqrt(1m), exponent: 1.5, depth: 1m, damping: damping }
     }
     effect closing_contacts {
         contact heel {
             gap: distance(closer_pad, closing_cam),
-            stiffness: stiffness,
+            stiffness: stiffness*sqrt(1m),
             exponent: 1.5,
             depth: 1m,
             damping: damping
         }
         contact fork {
             gap: closer_way - s + close_play,
-            stiffness: stiffness,
+            stiffness: stiffness*sqrt(1m),
             exponent: 1.5,
             depth: 1m,
             damping: damping
@@ -192,9 +191,11 @@ mechanism! {
         out nose_force: N = force(nose);
         out tip_force: N = force(tip);
         out seat_force: N = force(seat);
+        out cam_torque: N*m = effort(shaft);
+    }
+    effect closing_loads {
         out heel_force: N = force(heel);
         out fork_force: N = force(fork);
-        out cam_torque: N*m = effort(shaft);
     }
     /// Since the start: work of the cam's torque, and what contacts and guide have taken, lost or stored.
     effect books {
@@ -233,9 +234,9 @@ mechanism! {
     /// With play, friction, a cam that may turn unevenly, all forces by name, and the work of each.
     scene Friction = uneven + closing + inertia + closing_inertia + contacts + closing_contacts + clearance + helper
         + guide
-        + gravity + loads + books;
+        + gravity + loads + closing_loads + books;
     /// A valve spring in place of the closing cam.
-    scene Ordinary = even + inertia + contacts + clearance + guide + gravity + spring;
+    scene Ordinary = even + inertia + contacts + clearance + guide + gravity + spring + loads;
 }
 
 /// The ready valvetrain: 11 mm within 160°, cams that turn counter-clockwise.

@@ -1,31 +1,63 @@
 //! Motions of the valvetrain for its study: the last of some turns, sampled over the cam angle.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
-use mbs_runtime::{Energy, Failure};
+use mbs_runtime::{Dynamic, Energy, Failure, Stepper};
 
-use super::DesmoFriction;
-use super::design::Curve;
+use super::design::{Curve, Design};
+use super::{DesmoFriction, DesmoOrdinary};
 
 /// The valvetrain with contacts, play and friction.
 pub type Valvetrain = DesmoFriction<Curve, Curve>;
 
+/// The valvetrain with a valve spring in place of the closing cam.
+pub type Ordinary = DesmoOrdinary<Curve, Curve>;
+
 /// Names of [`Turn::forces`].
 pub const FORCES: [&str; 5] =
     ["opener on its cam", "opener on the valve", "seat", "closer on its cam", "fork on the valve"];
+
+/// Largest differences of lift, velocity and acceleration from the law over a turn (m over rad) with permanent contact, and how far the
+/// distance of both rockers varies (m). Compared are 720 places, shifted by this share of their distance.
+///
+/// # Errors
+/// Those of [`Stepper::assemble`] and [`Stepper::advance_to`].
+pub fn against_law(
+    design: &Design,
+    [opening, shutting]: &[Curve; 2],
+    shift: f64,
+) -> Result<[f64; 4], Failure> {
+    const PLACES: u32 = 720;
+    let mut mechanism = design.moved_by(opening.clone(), shutting.clone());
+    mechanism.speed = 1.0;
+    let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0)?;
+    let (mut errors, mut least, mut most) = ([0.0_f64; 3], f64::INFINITY, f64::NEG_INFINITY);
+    for step in 0..PLACES {
+        let t = TAU * (f64::from(step) + shift) / f64::from(PLACES);
+        stepper.advance_to(t)?;
+        let outputs = stepper.outputs();
+        let [apart, lift] = [outputs.as_ref()[0], outputs.as_ref()[1]];
+        (least, most) = (least.min(apart.value), most.max(apart.value));
+        let found = [Some(lift.value), lift.rate, lift.acceleration];
+        for (error, (found, law)) in errors.iter_mut().zip(found.into_iter().zip(design.law.jet(t - PI))) {
+            *error = error.max((found.unwrap_or(f64::NAN) - law).abs());
+        }
+    }
+    Ok([errors[0], errors[1], errors[2], most - least])
+}
 
 /// A turn of the cam, one value for each cam angle.
 #[derive(Clone, Debug, Default)]
 pub struct Turn {
     /// Cam angle from −180 to 180 (deg).
     pub angle: Vec<f64>,
-    /// Lift (m).
-    pub lift: Vec<f64>,
+    /// Cam angle and angle of the opener (rad), lift (m), angle of the closer (rad), which stays empty without one.
+    pub coordinates: [Vec<f64>; 4],
     /// Acceleration of the valve, positive where it opens (m/s²).
     pub acceleration: Vec<f64>,
-    /// Contact forces (N).
+    /// Contact forces (N); those of a closer that is not there are 0.
     pub forces: [Vec<f64>; 5],
     /// Torque that the cam needs (N m).
     pub torque: Vec<f64>,
@@ -45,39 +77,85 @@ impl Turn {
     /// # Errors
     /// Those of [`Simulation::start_from_text`] and [`Simulation::watch`].
     pub fn of(valvetrain: &Valvetrain, turns: u32, samples: u32, tolerance: f64) -> Result<Self, Failure> {
+        Self::moved((valvetrain.clone(), valvetrain.speed), turns, samples, tolerance)
+    }
+
+    /// The same with a valve spring in place of the closing cam; work and defect stay 0.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn of_spring(
+        valvetrain: &Ordinary,
+        turns: u32,
+        samples: u32,
+        tolerance: f64,
+    ) -> Result<Self, Failure> {
+        Self::moved((valvetrain.clone(), valvetrain.speed), turns, samples, tolerance)
+    }
+
+    /// The last turn of a mechanism at this speed (rad/s).
+    fn moved<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+        (mechanism, speed): (S, f64),
+        turns: u32,
+        samples: u32,
+        tolerance: f64,
+    ) -> Result<Self, Failure> {
         let started = Instant::now();
         let method: Explicit<DormandPrince8, Projection> = Explicit::default();
-        let run = Simulation::start_from_text(valvetrain.clone(), method, 0.0)?;
+        let run = Simulation::start_from_text(mechanism, method, 0.0)?;
         let mut run = run.with_tolerance(Tolerance::new(tolerance));
         let energy = |energy: Energy<f64>| energy.kinetic + energy.potential;
         let before = energy(run.balance().energy);
-        let turn = TAU / valvetrain.speed.abs();
+        let turn = TAU / speed.abs();
         if turns > 1 {
             run.advance_to(turn * f64::from(turns - 1))?;
         }
         let mut found = Turn::default();
         let mut defect = 0.0_f64;
         run.watch(turn * f64::from(turns), samples, |run| {
-            let outputs = run.outputs();
-            let loads = run.loads();
-            let [torque, work, taken] = [0, 1, 2].map(|index| loads.as_ref()[index]);
-            let forces = outputs.as_ref().iter().map(|output| output.value);
+            let (outputs, loads) = (run.outputs(), run.loads());
+            let forces = outputs.as_ref().iter().map(|output| output.value).chain(core::iter::repeat(0.0));
             found.forces.iter_mut().zip(forces).for_each(|(all, force)| all.push(force));
             // Over the place in the turn: an uneven cam has another angle.
             let place =
-                f64::from(u32::try_from(found.lift.len() + 1).unwrap_or(samples)) / f64::from(samples);
+                f64::from(u32::try_from(found.angle.len() + 1).unwrap_or(samples)) / f64::from(samples);
             found.angle.push(360.0 * place - 180.0);
-            found.lift.push(run.q()[2]);
+            found.coordinates.iter_mut().zip(run.q()).for_each(|(all, value)| all.push(*value));
             found.acceleration.push(run.qdd()[2]);
-            found.torque.push(torque);
-            found.work = work;
-            let rest = work - (energy(run.balance().energy) - before) - taken;
-            defect = defect.max(rest.abs());
+            found.torque.push(loads.as_ref()[0]);
+            if let [_, work, taken] = loads.as_ref() {
+                found.work = *work;
+                let rest = work - (energy(run.balance().energy) - before) - taken;
+                defect = defect.max(rest.abs());
+            }
         })?;
         found.defect = defect / found.work.abs().max(f64::MIN_POSITIVE);
         found.evaluations = run.counts().evaluations;
         found.time = started.elapsed();
         Ok(found)
+    }
+
+    /// Lift (m) over the cam angle.
+    pub fn lift(&self) -> &[f64] {
+        &self.coordinates[2]
+    }
+
+    /// Intervals of the cam angle (deg) in which a contact is closed.
+    pub fn touches(&self, force: usize) -> Vec<[f64; 2]> {
+        self.spans(|k| self.forces[force][k] > 0.0)
+    }
+
+    /// Intervals of the cam angle (deg) at which `holds` holds.
+    fn spans(&self, holds: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
+        let mut spans: Vec<[f64; 2]> = Vec::new();
+        for (k, angle) in self.angle.iter().enumerate().filter(|(k, _)| holds(*k)) {
+            let before = if k == 0 { *angle } else { self.angle[k - 1] };
+            match spans.last_mut() {
+                Some(span) if span[1] == before => span[1] = *angle,
+                _ => spans.push([before, *angle]),
+            }
+        }
+        spans
     }
 
     /// Largest value of a contact force (N).
@@ -92,16 +170,7 @@ impl Turn {
 
     /// Intervals of the cam angle (deg) in which neither rocker nor the seat touches the valve.
     pub fn flights(&self) -> Vec<[f64; 2]> {
-        let touches = |k: usize| [1, 2, 4].iter().any(|force| self.forces[*force][k] > 0.0);
-        let mut spans: Vec<[f64; 2]> = Vec::new();
-        for (k, angle) in self.angle.iter().enumerate().filter(|(k, _)| !touches(*k)) {
-            let before = if k == 0 { *angle } else { self.angle[k - 1] };
-            match spans.last_mut() {
-                Some(span) if span[1] == before => span[1] = *angle,
-                _ => spans.push([before, *angle]),
-            }
-        }
-        spans
+        self.spans(|k| [1, 2, 4].iter().all(|force| self.forces[*force][k] <= 0.0))
     }
 
     /// Part of the turn in which nothing touches the valve.

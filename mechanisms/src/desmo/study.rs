@@ -1,16 +1,18 @@
 //! The study of the valvetrain: synthesis, kinematic check, rigid dynamics at two speeds, sensitivity, cost of accuracy.
 
 mod chain;
+mod moving;
 mod pictures;
 
 use core::f64::consts::PI;
 
 use mbs_workbench::cams::follower::{Cam, Direction};
+use mbs_workbench::cams::lift::Lift;
 use mbs_workbench::study::{Parameter, Report, Study, StudyError, Values};
 
 use super::Design;
 use super::design::Curve;
-use super::motion::{Turn, Valvetrain};
+use super::motion::{Ordinary, Turn, Valvetrain};
 
 /// `mbs study desmo`.
 pub const STUDY: Study = Study {
@@ -18,17 +20,24 @@ pub const STUDY: Study = Study {
     parameters: &[
         parameter("speed", "rad/s", 9000.0 * PI / 30.0, "speed of the cam"),
         parameter("slow", "rad/s", 5000.0 * PI / 30.0, "the other speed"),
-        parameter("lift", "m", 0.011, "lift of the valve"),
-        parameter("duration", "rad", 160.0 * PI / 180.0, "cam angle from seat to seat"),
+        parameter("lift", "m", 0.011, "lift of the valve; a `--law` has its own"),
+        parameter(
+            "duration",
+            "rad",
+            160.0 * PI / 180.0,
+            "cam angle from seat to seat; a `--law` has its own",
+        ),
         parameter("sense", "1", 1.0, "1 for cams that turn counter-clockwise, else -1"),
         parameter("open_play", "m", 1e-4, "clearance between opener and valve"),
         parameter("close_play", "m", 3e-5, "clearance between closer and valve"),
-        parameter("stiffness", "N/m", 5e10, "K of the contacts, in N/m^1.5"),
+        parameter("stiffness", "N/m^1.5", 5e10, "K of the contacts"),
         parameter("damping", "s/m", 1.5, "D of the contacts"),
         parameter("valve_mass", "kg", 0.028, "mass of the valve"),
         parameter("opener_inertia", "kg*m^2", 1.3e-5, "moment of inertia about the pivot"),
         parameter("closer_inertia", "kg*m^2", 2.2e-5, "moment of inertia about the pivot"),
         parameter("preload", "N*m", 1.2, "torque of the helper spring at lift 0"),
+        parameter("spring", "N/m", 35000.0, "stiffness of the valve spring of the ordinary valvetrain"),
+        parameter("spring_preload", "N", 250.0, "its force at lift 0"),
         parameter("drag", "N*s/m", 2.0, "viscous friction of the guide"),
         parameter("dry", "N", 3.0, "dry friction of the guide"),
         parameter("swing", "rad", 0.0, "amplitude of a harmonic of the cam's angle"),
@@ -37,6 +46,7 @@ pub const STUDY: Study = Study {
         parameter("runs", "1", 32.0, "perturbed runs of the envelope"),
         parameter("spread", "1", 0.2, "half the width of the perturbations of K, D and clearances"),
     ],
+    takes_law: true,
     run: study,
 };
 
@@ -60,6 +70,23 @@ struct Case {
     tolerance: f64,
 }
 
+/// The law itself, if the valve is closed and at rest at 180°, where all runs begin.
+fn closed_half_a_turn_from_its_origin(law: Lift) -> Result<Lift, StudyError> {
+    /// Shares of the largest magnitudes.
+    const CLOSED: f64 = 1e-3;
+    let turn = (0..720).map(|k| law.jet::<f64>(f64::from(k).to_radians() / 2.0));
+    let most = turn.fold([0.0_f64; 2], |most, jet| [0, 1].map(|order| most[order].max(jet[order].abs())));
+    let start = law.jet::<f64>(-PI);
+    if (0..2).all(|order| start[order].abs() <= CLOSED * most[order]) {
+        return Ok(law);
+    }
+    let message = format!(
+        "the law opens the valve by {:.3} mm at 180°, where the motion begins\nhelp: shift the law: let it rise from 0°, or have full lift there",
+        1e3 * start[0]
+    );
+    Err(StudyError(message))
+}
+
 fn failed(error: impl core::fmt::Display) -> StudyError {
     StudyError(error.to_string())
 }
@@ -75,7 +102,10 @@ impl<'a> Chain<'a> {
                 return Err(StudyError(format!("`{name}` must be above 0")));
             }
         }
-        let law = Design::law(values.get("lift"), values.get("duration")).map_err(failed)?;
+        let law = match &values.law {
+            Some(law) => closed_half_a_turn_from_its_origin(law.clone())?,
+            None => Design::law(values.get("lift"), values.get("duration")).map_err(failed)?,
+        };
         let design = Design::ready(law, direction);
         let cams = design.cams().map_err(failed)?;
         let mut curves = design.curves().map_err(failed)?;
@@ -107,14 +137,37 @@ impl<'a> Chain<'a> {
         valvetrain
     }
 
+    /// The valvetrain of a case with a valve spring in place of the closing cam.
+    fn ordinary(&self, case: &Case) -> Ordinary {
+        let value = |name| self.values.get(name);
+        let [opening, shutting] = self.curves.clone();
+        let mut valvetrain: Ordinary = self.design.moved_by(opening, shutting).scene();
+        let [hardness, damping, play] = case.factors;
+        valvetrain.speed = case.speed;
+        valvetrain.open_play = play * value("open_play");
+        valvetrain.stiffness = hardness * value("stiffness");
+        valvetrain.damping = damping * value("damping");
+        valvetrain.valve_mass = value("valve_mass");
+        valvetrain.opener_inertia = value("opener_inertia");
+        valvetrain.drag = value("drag");
+        valvetrain.dry = value("dry");
+        valvetrain.valve_spring = value("spring");
+        valvetrain.valve_preload = value("spring_preload");
+        valvetrain
+    }
+
+    /// Turns from rest of all runs.
+    fn turns(&self) -> u32 {
+        (self.values.get("turns") as u32).max(1)
+    }
+
     /// The last turn of a case.
     fn turn(&self, case: &Case) -> Result<Turn, StudyError> {
         self.turn_on(&self.curves, case)
     }
 
     fn turn_on(&self, curves: &[Curve; 2], case: &Case) -> Result<Turn, StudyError> {
-        let turns = self.values.get("turns") as u32;
-        Turn::of(&self.valvetrain(curves, case), turns.max(1), SAMPLES, case.tolerance).map_err(failed)
+        Turn::of(&self.valvetrain(curves, case), self.turns(), SAMPLES, case.tolerance).map_err(failed)
     }
 }
 
@@ -146,6 +199,8 @@ fn study(values: &Values, say: &mut dyn FnMut(&str)) -> Result<Report, StudyErro
         sections.push(section);
         sentence = said;
     }
+    say("valve spring");
+    sections.push(chain::spring(&chain)?);
     say("sensitivity");
     sections.push(chain::sensitivity(&chain)?);
     say("envelope");

@@ -1,37 +1,13 @@
 //! The valvetrain with permanent contact, against its lift law.
 
-use core::f64::consts::{PI, TAU};
-
-use mbs_runtime::Stepper;
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
 use mbs_workbench::cams::follower::Direction;
 use mbs_workbench::cams::lift::{Flank, Lift};
 use mbs_workbench::study::Values;
 
-use super::Design;
+use super::motion::against_law;
 use super::study::STUDY;
-
-/// Largest differences of lift, velocity and acceleration from the law over a turn at 1 rad/s, and how far the distance of both
-/// rockers varies.
-fn compared(design: &Design) -> [f64; 4] {
-    let mut mechanism = design.mechanism().expect("a pair of cams");
-    mechanism.speed = 1.0;
-    let start = [-PI, 0.0, 0.0, 0.0];
-    let mut stepper = Stepper::assemble(mechanism, start, 0.0).expect("an assembly");
-    let mut errors = [0.0_f64; 3];
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-    for step in 0..720 {
-        let t = TAU * f64::from(step) / 720.0;
-        stepper.advance_to(t).expect("a position");
-        let outputs = stepper.outputs();
-        let [apart, lift] = [outputs.as_ref()[0], outputs.as_ref()[1]];
-        (least, most) = (least.min(apart.value), most.max(apart.value));
-        let found = [Some(lift.value), lift.rate, lift.acceleration].map(|part| part.expect("a derivative"));
-        for (error, (found, law)) in errors.iter_mut().zip(found.into_iter().zip(design.law.jet(t - PI))) {
-            *error = error.max((found - law).abs());
-        }
-    }
-    [errors[0], errors[1], errors[2], most - least]
-}
+use super::{Design, DesmoFriction};
 
 #[test]
 fn the_valve_moves_by_its_law_and_both_rockers_keep_their_distance() {
@@ -40,7 +16,9 @@ fn the_valve_moves_by_its_law_and_both_rockers_keep_their_distance() {
     let dwelling = || Lift::flanks(Flank::Polynomial4567, 0.008, [1.3, 0.4, 1.4]).expect("a law");
     for (name, law) in [("even powers", valve()), ("4-5-6-7 with a dwell", dwelling())] {
         for direction in [Direction::CounterClockwise, Direction::Clockwise] {
-            let [lift, velocity, acceleration, apart] = compared(&Design::ready(law.clone(), direction));
+            let design = Design::ready(law.clone(), direction);
+            let compared = against_law(&design, &design.curves().expect("a pair of cams"), 0.0);
+            let [lift, velocity, acceleration, apart] = compared.expect("permanent contact");
             println!(
                 "desmo, {name}, {direction:?}: lift {lift:.1e} m, velocity {velocity:.1e} m/rad, \
                  acceleration {acceleration:.1e} m/rad^2, rockers {apart:.1e} m of 2e-12"
@@ -48,6 +26,34 @@ fn the_valve_moves_by_its_law_and_both_rockers_keep_their_distance() {
             assert!(lift < 1e-14 && velocity < 1e-13 && acceleration < 1e-12 && apart < 2e-12);
         }
     }
+}
+
+#[test]
+fn the_first_impacts_are_those_of_an_independent_program() {
+    /// Lifts (m) at 45, 54 and 72 of 72 parts of 200° from the start, from `tests/motions/data/desmo.csv`, case `9000 play`.
+    const LIFTS: [(usize, f64); 3] =
+        [(45, 0.0007354327731979067), (54, 0.00652443145074413), (72, 0.009013459519438745)];
+    let law = Design::law(0.011, 160_f64.to_radians()).expect("a law");
+    let design = Design::ready(law, Direction::CounterClockwise);
+    let valvetrain: DesmoFriction<_, _> = design.mechanism().expect("a pair of cams").scene();
+    let method: Explicit<DormandPrince8, Projection> = Explicit::default();
+    let run = Simulation::start_from_text(valvetrain.clone(), method, 0.0).expect("it starts");
+    let mut run = run.with_tolerance(Tolerance::new(1e-8));
+    for (place, expected) in LIFTS {
+        let until = core::f64::consts::TAU / valvetrain.speed * 200.0 / 360.0 * place as f64 / 72.0;
+        run.advance_to(until).expect("it moves");
+        let error = (run.q()[2] - expected).abs();
+        println!("desmo at place {place}: lift {:.6} mm, {error:.1e} m of 1e-8", 1e3 * run.q()[2]);
+        assert!(error < 1e-8, "{error:e}");
+    }
+}
+
+#[test]
+fn a_law_that_opens_the_valve_where_the_motion_begins_is_refused() {
+    let mut values = Values::of(&STUDY);
+    values.law = Some(Lift::flanks(Flank::Cycloid, 0.008, [2.0, 0.5, 2.0]).expect("a law"));
+    let refused = (STUDY.run)(&values, &mut |_| ()).map(|_| ()).expect_err("it is open").to_string();
+    assert!(refused.contains("mm at 180°") && refused.contains("shift the law"), "{refused}");
 }
 
 #[test]

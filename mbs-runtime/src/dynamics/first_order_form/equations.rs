@@ -55,6 +55,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     parameters: Option<S::Parameters>,
     /// Time (s) up to which all contacts stay open by the bounds that the text declares.
     quiet: R,
+    /// `true` if steps end where contacts close or open.
+    locates: bool,
     pub(crate) counts: Counts,
 }
 
@@ -95,6 +97,7 @@ where
             scrutiny: Scrutiny::beyond(),
             parameters: (!S::CONTACTS.is_empty()).then_some(*model.parameters),
             quiet: start,
+            locates: true,
             counts,
         }
     }
@@ -102,6 +105,11 @@ where
     /// Nothing of a contact is missed that lasts longer than `resolution` (s).
     pub(crate) fn with_resolution(self, resolution: Option<R>) -> Self {
         Equations { scrutiny: Scrutiny { resolution, ..self.scrutiny }, ..self }
+    }
+
+    /// Steps go over touches and lift-offs of contacts.
+    pub(crate) fn without_located_contacts(self) -> Self {
+        Equations { locates: false, ..self }
     }
 
     pub(crate) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
@@ -391,6 +399,9 @@ where
         if const { S::CONTACTS.is_empty() } {
             return false;
         }
+        if !self.locates {
+            return false;
+        }
         let Some(parameters) = &mut self.parameters else { return false };
         let open = self.model.leave_out(self.start, (t, &y.y), parameters);
         self.quiet = open.until;
@@ -400,7 +411,7 @@ where
     #[inline(always)]
     fn may_kink(&mut self, to: R) -> bool {
         let is_quiet = to <= self.quiet;
-        Self::MAY_KINK && !is_quiet
+        Self::MAY_KINK && self.locates && !is_quiet
     }
 
     fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {

@@ -12,6 +12,7 @@ use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::Tolerance;
 use crate::dynamics::model::{Counts, Formulation, Model};
 use crate::dynamics::simulation::fixed_run_events::event_failure;
+use crate::dynamics::simulation::graded_steps::ContactSteps;
 use crate::dynamics::simulation::{Fresh, Simulation};
 use crate::failure::Failure;
 use crate::linear_algebra::vectors::Each;
@@ -238,6 +239,9 @@ where
         let (method, formulation) = (self.method.integrator, &self.method.formulation);
         let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
         equations = equations.with_resolution(self.scrutiny.resolution);
+        if self.contact_steps == ContactSteps::Unlocated {
+            equations = equations.without_located_contacts();
+        }
         let start = beginning(model.mechanism, &from);
         let (mut stopped, mut last, mut errors) = (None, start, self.errors);
         let (taken, resolution, tolerance) = (adaptive.accepted, self.scrutiny.resolution, self.tolerance);

@@ -13,7 +13,12 @@ use crate::tolerances::motion;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Shows the gaps of a state at `t` (s), where inputs and phases are known at time `from` (s).
-    fn gaps(&self, from: R, (t, y): (R, &IntegratorState<R, N, S::States>), see: impl FnMut(Gap<R>)) {
+    pub(crate) fn gaps(
+        &self,
+        from: R,
+        (t, y): (R, &IntegratorState<R, N, S::States>),
+        see: impl FnMut(Gap<R>),
+    ) {
         self.moved(from, t, |Model { mechanism, parameters, .. }| {
             mechanism.gaps(parameters, &mechanism.position(parameters, &y.q, t), &y.qd, see);
         });

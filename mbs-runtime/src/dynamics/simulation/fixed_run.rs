@@ -6,14 +6,12 @@ use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::Method;
 use crate::dynamics::model::{Counts, Model};
+use crate::dynamics::simulation::graded_steps::ContactSteps;
 use crate::dynamics::simulation::{Fresh, Simulation};
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::motion;
-
-/// Parts that contacts may cut a step of fixed size into.
-pub(super) const MOST_PARTS: u32 = 8;
 
 /// A step of fixed size that is not taken yet.
 pub(super) struct Ahead<R, P, const N: usize, const M: usize, Z> {
@@ -106,6 +104,12 @@ where
         if const { !S::CONTACTS.is_empty() } {
             return self.step_with_contacts(h);
         }
+        self.whole_step(h)
+    }
+
+    /// A step of `h` (s) that ends at no contact.
+    #[inline(always)]
+    fn whole_step(&mut self, h: R) -> Result<(), Failure> {
         let ahead = self.ahead(h, self.counts, false)?;
         self.check_ahead(&ahead)?;
         self.go(ahead);
@@ -237,7 +241,7 @@ where
 
     /// A step of `h` (s), or up to where a contact closes or opens. Nothing after that is judged.
     pub(super) fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
-        if const { S::CONTACTS.is_empty() } {
+        if S::CONTACTS.is_empty() || self.contact_steps == ContactSteps::Unlocated {
             return self.ahead(h, self.counts, false);
         }
         let mut trial = self.trial_with_contacts(h, self.counts)?;
@@ -259,6 +263,11 @@ where
 
     /// A step of `h` (s) of a text with contacts.
     fn step_with_contacts(&mut self, h: R) -> Result<(), Failure> {
+        match self.contact_steps {
+            ContactSteps::Located => {}
+            ContactSteps::Graded(_) => return self.step_in_parts(self.now.t + h),
+            ContactSteps::Unlocated => return self.whole_step(h),
+        }
         let trial = self.trial_with_contacts(h, self.counts)?;
         if self.kink(&trial)?.is_some() {
             return self.step_in_parts(trial.ahead.next.t);
@@ -289,10 +298,13 @@ where
     }
 
     fn parts(&mut self, until: R) -> Result<(), Failure> {
-        for part in 1..=MOST_PARTS {
-            let h = until - self.now.t;
-            let to_kink = part < MOST_PARTS;
-            let ahead = if to_kink { self.ahead_to_kink(h)? } else { self.ahead(h, self.counts, false)? };
+        let (whole, most) = (until - self.now.t, self.most_parts());
+        for part in 1..=most {
+            let rest = until - self.now.t;
+            let ahead = match part < most {
+                true => self.ahead_to_kink(self.part_of(whole, rest))?,
+                false => self.ahead(rest, self.counts, false)?,
+            };
             self.check_ahead(&ahead)?;
             self.go(ahead);
             if until <= self.now.t {

@@ -8,7 +8,7 @@ use crate::dynamics::model::Counts;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::Method;
 use crate::dynamics::simulation::Simulation;
-use crate::dynamics::simulation::fixed_run::{Ahead, AheadOf, MOST_PARTS, end_of};
+use crate::dynamics::simulation::fixed_run::{Ahead, AheadOf, end_of};
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
@@ -70,10 +70,14 @@ where
         let mut monitor = self.monitor(direction, &fresh, &mut event)?;
         for index in 1..=steps {
             let end = end_of(from, until, (index, steps));
-            for part in 1..=MOST_PARTS {
-                let h = end - self.now.t;
-                let to_kink = part < MOST_PARTS;
-                let whole = if to_kink { self.ahead_to_kink(h)? } else { self.ahead(h, self.counts, false)? };
+            let (length, most) = (end - self.now.t, self.most_parts());
+            for part in 1..=most {
+                let rest = end - self.now.t;
+                let to_kink = part < most;
+                let whole = match to_kink {
+                    true => self.ahead_to_kink(self.part_of(length, rest))?,
+                    false => self.ahead(rest, self.counts, false)?,
+                };
                 let before = monitor;
                 let found = reached(&mut monitor, &whole, &mut event)?;
                 let (last, is_event) = match found {

@@ -6,6 +6,7 @@ pub(crate) mod checks;
 pub(crate) mod contact;
 pub(crate) mod fixed_run;
 pub(crate) mod fixed_run_events;
+pub(crate) mod graded_steps;
 pub(crate) mod reading;
 
 use crate::dynamics::equilibrium::consistent_start;
@@ -23,6 +24,7 @@ use crate::dynamics::model::method::Method;
 use crate::dynamics::model::metric::{Metric, Tolerance, require_position_tolerance};
 use crate::dynamics::model::sign_checks::parameter_failure;
 use crate::dynamics::model::{Counts, Formulation, Model};
+use crate::dynamics::simulation::graded_steps::ContactSteps;
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
@@ -87,6 +89,8 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     /// Residual over the row's scale at which a projection of positions ends.
     position_tolerance: R,
     adaptive: Adaptive<R>,
+    /// Steps where contacts close or open.
+    contact_steps: ContactSteps<R>,
     /// Resolution and bounds of the search for events, limits and contacts.
     scrutiny: Scrutiny<R>,
     /// The event that the last run ended at.
@@ -244,6 +248,7 @@ where
             tolerance: Tolerance { relative: tolerance, absolute: tolerance },
             position_tolerance: positions::OF_TERMS.of(),
             adaptive: Adaptive::default(),
+            contact_steps: ContactSteps::Located,
             scrutiny: Scrutiny::beyond(),
             stopped: None,
             passage: None,

@@ -246,8 +246,14 @@ fn in_si(number: f64, unit: Option<&Unit>) -> Result<f64, Gap> {
     let mut value = number;
     for (symbol, exponent) in unit.iter().flat_map(|unit| &unit.factors) {
         if let Some((_, factor, divisor, _)) = SUFFIXES.iter().find(|(name, ..)| *name == symbol.text) {
-            for _ in 0..exponent.unsigned_abs() {
-                value = if *exponent > 0 { value * factor / divisor } else { value / factor * divisor };
+            let scaled = |value: f64, [factor, divisor]: [f64; 2]| {
+                if *exponent > 0.0 { value * factor / divisor } else { value / factor * divisor }
+            };
+            for _ in 0..exponent.abs() as u32 {
+                value = scaled(value, [*factor, *divisor]);
+            }
+            if exponent.fract() != 0.0 {
+                value = scaled(value, [factor.sqrt(), divisor.sqrt()]);
             }
         }
     }

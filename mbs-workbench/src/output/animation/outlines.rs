@@ -95,6 +95,35 @@ pub fn joint(layer: &mut String, places: &Path) {
     turning(layer, places, &[0.0], circle);
 }
 
+/// An arrow from one point to another; a ring where both are one.
+pub fn arrow(layer: &mut String, from: &Path, to: &Path) {
+    const HEAD: f64 = 9.0;
+    const RED: &str = "#c8102e";
+    let mut corners: [Path; 7] = Default::default();
+    for (a, b) in from.iter().zip(to) {
+        let long = distance(*a, *b);
+        let along = if long > 0.0 { [(b[0] - a[0]) / long, (b[1] - a[1]) / long] } else { [0.0; 2] };
+        let head = HEAD.min(0.6 * long);
+        let place = |forth: f64, aside: f64| {
+            [a[0] + forth * along[0] - aside * along[1], a[1] + forth * along[1] + aside * along[0]]
+        };
+        let (neck, wing) = (long - head, 0.5 * head);
+        let outline =
+            [(0.0, -1.5), (neck, -1.5), (neck, -wing), (long, 0.0), (neck, wing), (neck, 1.5), (0.0, 1.5)];
+        corners.iter_mut().zip(outline).for_each(|(path, (forth, aside))| path.push(place(forth, aside)));
+    }
+    polygon(layer, &corners, &fill(RED));
+    let radii = from.iter().zip(to).map(|(a, b)| if distance(*a, *b) > 0.0 { "0" } else { "5" });
+    let radii: Vec<&str> = radii.collect();
+    let animated = format!(
+        "<circle r=\"{}\" fill=\"none\" stroke=\"{RED}\" stroke-width=\"1.5\">\n<animate attributeName=\"r\" calcMode=\"discrete\" \
+         {DURATION} values=\"{}\"/>\n</circle>",
+        radii[0],
+        radii.join(";")
+    );
+    turning(layer, from, &[0.0], &animated);
+}
+
 pub fn support(layer: &mut String, x: f64, y: f64) {
     let (w, h) = (1.2 * BAR, 2.0 * BAR);
     let style = "fill=\"#dddddd\" stroke=\"#333333\" stroke-width=\"1.5\"";

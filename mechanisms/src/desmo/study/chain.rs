@@ -2,14 +2,16 @@
 
 use core::f64::consts::{PI, TAU};
 
-use mbs_runtime::Stepper;
 use mbs_workbench::cams::limits::{Limits, examine};
 use mbs_workbench::cams::noise;
 use mbs_workbench::study::{Section, StudyError, Table};
 
 use super::super::design::Curve;
-use super::super::motion::{FORCES, Turn};
-use super::{Case, Chain, TOLERANCE, case, failed, pictures, tables};
+use super::super::motion::{FORCES, Ordinary, Turn, against_law};
+use super::{Case, Chain, TOLERANCE, case, failed, moving, pictures, tables};
+
+/// Places of the comparison with the law, beside the points of every table, as a share of their distance.
+const OFFSET: f64 = 0.37;
 
 fn revolutions(speed: f64) -> f64 {
     speed * 30.0 / PI
@@ -56,31 +58,8 @@ pub fn synthesis(chain: &Chain) -> Result<Section, StudyError> {
         title: "Synthesis of both cams".to_string(),
         text: vec!["Closed forms from the lift law to both pitch curves and contours; derivatives are exact. A hollow flank needs a smaller grinding wheel than its R.".to_string()],
         tables: vec![table],
-        pictures: vec![pictures::moving(chain)?, pictures::law(chain)],
+        pictures: vec![moving::kinematic(chain)?, pictures::law(chain)],
     })
-}
-
-/// Largest errors of lift, velocity and acceleration (m over rad), and how far the rockers' distance varies (m).
-fn errors(chain: &Chain, [opening, shutting]: &[Curve; 2]) -> Result<[f64; 4], StudyError> {
-    let mut mechanism = chain.design.moved_by(opening.clone(), shutting.clone());
-    mechanism.speed = 1.0;
-    let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0).map_err(failed)?;
-    let (mut errors, mut least, mut most) = ([0.0_f64; 3], f64::INFINITY, f64::NEG_INFINITY);
-    // Places beside the points of every table.
-    for step in 0..720 {
-        let t = TAU * (f64::from(step) + 0.37) / 720.0;
-        stepper.advance_to(t).map_err(failed)?;
-        let outputs = stepper.outputs();
-        let [apart, lift] = [outputs.as_ref()[0], outputs.as_ref()[1]];
-        (least, most) = (least.min(apart.value), most.max(apart.value));
-        let found = [Some(lift.value), lift.rate, lift.acceleration];
-        for (error, (found, law)) in
-            errors.iter_mut().zip(found.into_iter().zip(chain.design.law.jet(t - PI)))
-        {
-            *error = error.max((found.unwrap_or(f64::NAN) - law).abs());
-        }
-    }
-    Ok([errors[0], errors[1], errors[2], most - least])
 }
 
 /// Permanent contact against the law, with tables of the cams and with noise in a table of the lift.
@@ -94,7 +73,8 @@ pub fn kinematics(chain: &Chain) -> Result<Section, StudyError> {
     ]);
     let exact = chain.design.curves().map_err(failed)?;
     let mut row = |name: String, curves: &[Curve; 2]| -> Result<(), StudyError> {
-        let found = errors(chain, curves)?.map(|error| format!("{error:.1e}"));
+        let found =
+            against_law(&chain.design, curves, OFFSET).map_err(failed)?.map(|error| format!("{error:.1e}"));
         let [lift, velocity, acceleration, apart] = found;
         table.push([name, lift, velocity, acceleration, apart]);
         Ok(())
@@ -193,9 +173,57 @@ pub fn dynamics(chain: &Chain, speed: f64) -> Result<(Section, String), StudyErr
             pictures::torques(&tight, &loose),
             pictures::forces("Contact forces without play", &tight),
             pictures::forces("Contact forces with play", &loose),
+            pictures::contacts("Closed contacts without play", &tight),
+            pictures::contacts("Closed contacts with play", &loose),
+            moving::with_forces(chain, "Without play", &tight)?,
+            moving::with_forces(chain, "With play", &loose)?,
         ],
     };
     Ok((section, said))
+}
+
+/// A valve spring in place of the closing cam, at both speeds.
+pub fn spring(chain: &Chain) -> Result<Section, StudyError> {
+    let mut table = Table::new([
+        "last turn, largest values",
+        "valve (km/s²)",
+        "opener on its cam (N)",
+        "opener on the valve (N)",
+        "seat (N)",
+        "off the law (mm)",
+        "opener off its cam or the valve, lift above 0.5 mm (%)",
+    ]);
+    let mut turns = Vec::new();
+    for name in ["slow", "speed"] {
+        let speed = chain.values.get(name);
+        let valvetrain: Ordinary = chain.ordinary(&case(speed, true));
+        let turn = Turn::of_spring(&valvetrain, chain.turns(), super::SAMPLES, TOLERANCE).map_err(failed)?;
+        let law: Vec<f64> =
+            turn.angle.iter().map(|angle| chain.design.law.jet::<f64>(angle.to_radians())[0]).collect();
+        let off =
+            turn.lift().iter().zip(&law).fold(0.0, |most: f64, (lift, law)| most.max((lift - law).abs()));
+        let is_open = |k: &usize| turn.lift()[*k] > 5e-4;
+        let flies = |k: &usize| turn.forces[0][*k] <= 0.0 || turn.forces[1][*k] <= 0.0;
+        let open = (0..law.len()).filter(is_open).count();
+        let flying = (0..law.len()).filter(is_open).filter(flies).count();
+        table.push([
+            format!("{:.0} 1/min", revolutions(speed)),
+            format!("{:.1}", 1e-3 * turn.hardest()),
+            format!("{:.0}", turn.peak(0)),
+            format!("{:.0}", turn.peak(1)),
+            format!("{:.0}", turn.peak(2)),
+            format!("{:.3}", 1e3 * off),
+            format!("{:.1}", 100.0 * flying as f64 / open.max(1) as f64),
+        ]);
+        turns.push((format!("{:.0} 1/min", revolutions(speed)), turn));
+    }
+    let picture = pictures::lifts(chain, &turns);
+    Ok(Section {
+        title: "Ordinary valvetrain with a spring".to_string(),
+        text: vec!["The same text without the closing cam: a valve spring of `spring` and `spring_preload` keeps the valve on the opener. Where the law asks for more deceleration than the spring gives, the valve leaves its law.".to_string()],
+        tables: vec![table],
+        pictures: vec![picture],
+    })
 }
 
 /// Stiffness, damping, play and points of tables.
@@ -302,7 +330,8 @@ pub fn accuracy(chain: &Chain) -> Result<Section, StudyError> {
     let mut points = Vec::new();
     for tolerance in [1e-6, 1e-7, 1e-8, 1e-9, TOLERANCE, 1e-11] {
         let found = turn(tolerance)?;
-        let error = found.lift.iter().zip(&exact.lift).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        let error =
+            found.lift().iter().zip(exact.lift()).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         points.push([found.evaluations as f64, error.max(1e-18)]);
         table.push([
             format!("{tolerance:.0e}"),

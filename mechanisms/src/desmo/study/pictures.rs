@@ -1,34 +1,12 @@
-//! Plots of the study, and the moving picture.
+//! Plots of the study.
 
-use core::f64::consts::TAU;
-
-use mbs_workbench::output::animation::animation;
-use mbs_workbench::output::places::places;
-use mbs_workbench::output::shapes::shapes;
-use mbs_workbench::study::plot::{Curve as Line, Plot};
-use mbs_workbench::study::{Picture, StudyError};
+use mbs_workbench::study::Picture;
+use mbs_workbench::study::plot::{Curve as Line, Plot, Timeline};
 
 use super::super::motion::{FORCES, Turn};
-use super::super::{CARD, DesmoKinematic};
-use super::{Chain, failed};
+use super::Chain;
 
 const ANGLE: &str = "cam angle (deg)";
-
-/// Both cams, rockers and valve over a turn.
-pub fn moving(chain: &Chain) -> Result<Picture, StudyError> {
-    let [opening, shutting] = chain.curves.clone();
-    let mut mechanism: DesmoKinematic<_, _> = chain.design.moved_by(opening, shutting);
-    mechanism.speed = TAU / 6.0;
-    mechanism.opener_radius = chain.design.opener.radius;
-    mechanism.closer_radius = chain.design.closer.radius;
-    let mechanism = mbs_workbench::erased::erase::erase(mechanism).into_mechanism();
-    let mechanism = mechanism.ok_or_else(|| StudyError("the cams leave the valve free".to_string()))?;
-    let motion = mbs_workbench::catalogue::sweep(mechanism.as_ref(), 6.0, 180).map_err(failed)?;
-    let picture = CARD.picture().map_err(failed)?;
-    let places = places(&picture, mechanism.as_ref(), &motion, None);
-    let svg = animation(&shapes(&picture.shapes), &motion, &places).map_err(StudyError)?;
-    Ok(Picture { caption: "Both cams, rockers and valve, a turn in six seconds".to_string(), svg })
-}
 
 /// Lift with its derivatives over the cam angle, each over its largest magnitude.
 pub fn law(chain: &Chain) -> Picture {
@@ -79,6 +57,36 @@ pub fn forces(caption: &str, turn: &Turn) -> Picture {
         y: "contact force (kN)".to_string(),
         curves: [0, 3, 2].map(curve).to_vec(),
         marks: Some(("valve touches nothing".to_string(), turn.flights())),
+        ..Plot::default()
+    };
+    plot.picture()
+}
+
+/// Contacts over the cam angle: closed where there is a bar.
+pub fn contacts(caption: &str, turn: &Turn) -> Picture {
+    let row = |force: usize| (FORCES[force].to_string(), turn.touches(force));
+    let mut rows = [0, 1, 2, 3, 4].map(row).to_vec();
+    rows.push(("valve touches nothing".to_string(), turn.flights()));
+    let ends = [-180.0, 180.0];
+    Timeline { caption: caption.to_string(), x: ANGLE.to_string(), ends, rows }.picture()
+}
+
+/// Lift with a valve spring over that of the law.
+pub fn lifts(chain: &Chain, turns: &[(String, Turn)]) -> Picture {
+    let Some((_, first)) = turns.first() else { return Picture::default() };
+    let law: Vec<f64> =
+        first.angle.iter().map(|angle| 1e3 * chain.design.law.jet::<f64>(angle.to_radians())[0]).collect();
+    let curve = |(name, turn): &(String, Turn)| {
+        let lift: Vec<f64> = turn.lift().iter().map(|lift| 1e3 * lift).collect();
+        Line::new(name, &turn.angle, &lift)
+    };
+    let mut curves: Vec<Line> = turns.iter().map(curve).collect();
+    curves.push(Line::new("law", &first.angle, &law).dashed());
+    let plot = Plot {
+        caption: "Lift with a valve spring".to_string(),
+        x: ANGLE.to_string(),
+        y: "lift (mm)".to_string(),
+        curves,
         ..Plot::default()
     };
     plot.picture()

@@ -1,0 +1,212 @@
+//! A lift law on the command line: a word, and options with its dimensions.
+
+use std::fs;
+use std::path::PathBuf;
+
+use clap::{Args, Parser};
+use mbs_codegen::quantity;
+
+use super::CommandError;
+use crate::cams::bspline::text;
+use crate::cams::lift::{FLANKS, Lift};
+use crate::mismatch::nearest;
+use crate::tables::{Columns, Spline, SplineKind, close_period, read};
+
+/// Dimensions of a law.
+#[derive(Args, Clone, Debug)]
+pub struct LawOptions {
+    /// Largest lift, of an oscillating follower its angle
+    #[arg(long, value_name = "11mm")]
+    pub lift: Option<String>,
+    /// From rest to rest, of an even-power law
+    #[arg(long, value_name = "160deg", value_parser = angle)]
+    duration: Option<f64>,
+    /// Duration of the rise
+    #[arg(long, value_name = "90deg", value_parser = angle)]
+    rise: Option<f64>,
+    /// Duration of the dwell at full lift [default: 0deg]
+    #[arg(long, value_name = "30deg", value_parser = angle)]
+    dwell: Option<f64>,
+    /// Duration of the return [default: that of the rise]
+    #[arg(long = "return", value_name = "90deg", value_parser = angle)]
+    back: Option<f64>,
+    /// Height and duration of ramps of constant velocity before and after the lift
+    #[arg(long, value_name = "0.1mm,15deg")]
+    ramp: Option<String>,
+    /// Polydyne correction s + c s″, c = m ω²/k
+    #[arg(long, value_name = "C", value_parser = number)]
+    polydyne: Option<f64>,
+    /// Units of the columns of a table [default: those in the header]
+    #[arg(long, value_name = "\"deg, mm\"", value_parser = Columns::parse)]
+    pub columns: Option<Columns>,
+    /// Knots of a least-squares fit to a table [default: through every point]
+    #[arg(long, value_name = "N", value_parser = super::positive)]
+    knots: Option<usize>,
+}
+
+/// A law with its options in one text.
+#[derive(Parser)]
+#[command(name = "LAW", no_binary_name = true, disable_help_flag = true)]
+struct Written {
+    law: String,
+    #[command(flatten)]
+    options: LawOptions,
+}
+
+/// A lift law in one text, as `4567 --lift 8mm --rise 75deg` or `lift.csv`: the words of `mbs cam`.
+///
+/// # Errors
+/// [`CommandError`] with the option that is missing or wrong.
+pub fn written(text: &str) -> Result<Lift, CommandError> {
+    // A B-spline has spaces of its own.
+    let words: Vec<&str> = match text.strip_prefix("bspline:") {
+        Some(_) => vec![text],
+        None => text.split_whitespace().collect(),
+    };
+    let read = Written::try_parse_from(words).map_err(|error| {
+        let text = error.to_string();
+        usage(text.lines().next().unwrap_or_default().trim_start_matches("error: "))
+    })?;
+    Ok(read.options.law(&read.law, false)?.0)
+}
+
+pub fn in_unit(text: &str, unit: &str, example: &str) -> Result<f64, String> {
+    let found = quantity(text.trim()).map_err(|(message, help)| format!("{message}; {help}"))?;
+    if found.unit.is_none() && found.value != 0.0 {
+        return Err(format!("a unit is needed, as in `{example}`"));
+    }
+    let fits = found.fits(unit) && found.value.is_finite();
+    if fits { Ok(found.value) } else { Err(format!("a quantity like `{example}` is needed")) }
+}
+
+pub fn length(text: &str) -> Result<f64, String> {
+    in_unit(text, "m", "12mm")
+}
+
+pub fn angle(text: &str) -> Result<f64, String> {
+    in_unit(text, "rad", "30deg")
+}
+
+pub fn number(text: &str) -> Result<f64, String> {
+    super::chosen::finite(text)
+}
+
+pub fn usage(message: impl Into<String>) -> CommandError {
+    CommandError::Usage(message.into())
+}
+
+impl LawOptions {
+    /// The largest lift in SI; an angle for an arm, a length elsewhere.
+    pub fn height(&self, turns: bool) -> Result<f64, CommandError> {
+        let text = self.lift.as_deref().ok_or_else(|| {
+            usage(format!(
+                "a law needs its lift\nhelp: say `--lift {}`",
+                if turns { "18deg" } else { "11mm" }
+            ))
+        })?;
+        let read = if turns { angle(text) } else { length(text) };
+        read.map_err(|why| {
+            let of = if turns {
+                "the lift of an oscillating follower is the angle of its arm"
+            } else {
+                "the lift is a length"
+            };
+            usage(format!("`--lift {text}`: {of}; {why}"))
+        })
+    }
+
+    /// The law that `word` names, with its bytes; `turns`: of an angle.
+    ///
+    /// # Errors
+    /// [`CommandError`] with the option that is missing or wrong.
+    pub fn law(&self, word: &str, turns: bool) -> Result<(Lift, Vec<u8>), CommandError> {
+        let needed = |value: Option<f64>, option: &str| {
+            value.ok_or_else(|| usage(format!("the law `{word}` needs `{option}`")))
+        };
+        let lift = if let Some(list) = word.strip_prefix("even:") {
+            let read: Result<Vec<u32>, _> = list.split(',').map(|p| p.trim().parse::<u32>()).collect();
+            let exponents = read
+                .map_err(|_| usage(format!("`{list}` are no exponents\nhelp: write `even:2,6,8,10,12`")))?;
+            Lift::hump(&exponents, self.height(turns)?, needed(self.duration, "--duration 160deg")?)?
+        } else if let Some((_, flank)) = FLANKS.iter().find(|(name, _)| *name == word) {
+            let rise = needed(self.rise, "--rise 90deg")?;
+            Lift::flanks(
+                *flank,
+                self.height(turns)?,
+                [rise, self.dwell.unwrap_or(0.0), self.back.unwrap_or(rise)],
+            )?
+        } else if let Some(text) = word.strip_prefix("bspline:") {
+            Lift::bspline(text::parse(&self.bspline(text)?, turns)?)?
+        } else {
+            return self.table(word, turns);
+        };
+        let lift = match &self.ramp {
+            None => lift,
+            Some(text) => {
+                let example = if turns { "0.2deg,15deg" } else { "0.1mm,15deg" };
+                let wrong =
+                    |why: String| usage(format!("`--ramp {text}`: {why}\nhelp: write `--ramp {example}`"));
+                let (height, duration) = text
+                    .split_once(',')
+                    .ok_or_else(|| wrong("height and duration are needed".to_string()))?;
+                let height = if turns { angle(height) } else { length(height) };
+                lift.with_ramps(height.map_err(wrong)?, angle(duration).map_err(wrong)?)?
+            }
+        };
+        Ok((self.corrected(lift)?, word.as_bytes().to_vec()))
+    }
+
+    /// The text of a B-spline law, of the command line or in a file.
+    fn bspline(&self, text: &str) -> Result<String, CommandError> {
+        if self.lift.is_some() {
+            return Err(usage("the constraints of a B-spline have its lift\nhelp: leave out `--lift`"));
+        }
+        if text.contains([';', ' ']) {
+            return Ok(text.to_string());
+        }
+        let named = |why: String| CommandError::Failed(format!("{text}: {why}"));
+        fs::read_to_string(text).map_err(|error| {
+            let help = "help: name a file, or write the law itself as `bspline:degree 5; knots …; at …`";
+            named(format!("cannot be read: {error}\n{help}"))
+        })
+    }
+
+    fn corrected(&self, lift: Lift) -> Result<Lift, CommandError> {
+        Ok(match self.polydyne {
+            None => lift,
+            Some(c) => lift.with_polydyne(c)?,
+        })
+    }
+
+    /// A lift from a file.
+    fn table(&self, word: &str, turns: bool) -> Result<(Lift, Vec<u8>), CommandError> {
+        let path = PathBuf::from(word);
+        if path.extension().is_none() {
+            let known = FLANKS.iter().map(|(name, _)| *name).chain(["even:2,6,8,10,12"]);
+            let names: Vec<&str> = known.collect();
+            let near = nearest(word, names.iter().copied());
+            let hint = near.map_or_else(
+                || format!("laws are {}", names.join(", ")),
+                |name| format!("did you mean `{name}`?"),
+            );
+            return Err(usage(format!("`{word}` is no law and no file\nhelp: {hint}")));
+        }
+        let named = |message: String| CommandError::Failed(format!("{word}: {message}"));
+        let bytes = fs::read(&path).map_err(|error| named(format!("cannot be read: {error}")))?;
+        let mut points = read(&bytes, self.columns.as_ref()).map_err(|fault| named(fault.to_string()))?;
+        let (across, up) = (&points.columns.x.1, &points.columns.y.1);
+        let expected = if turns { "rad" } else { "m" };
+        if across.coherent != "rad" || up.coherent != expected {
+            let why = format!(
+                "a lift in {} over an angle is needed, not {} over {}",
+                expected, up.name, across.name
+            );
+            return Err(named(format!("{why}\nhelp: name the columns, as `--columns \"deg, mm\"`")));
+        }
+        let period = core::f64::consts::TAU;
+        close_period(&mut points, period).map_err(|fault| named(fault.to_string()))?;
+        let spline = Spline::fit(&points.x, &points.y, SplineKind::PeriodicQuintic(period), self.knots);
+        let spline = spline.map_err(|error| named(format!("{error}\nhelp: another number of `--knots`")))?;
+        Ok((self.corrected(Lift::table(spline)?)?, bytes))
+    }
+}

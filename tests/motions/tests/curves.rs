@@ -1,0 +1,157 @@
+//! Cam joints with the place of the contact as a coordinate of its own, against closed forms of circles.
+#![forbid(unsafe_code)]
+
+use core::f64::consts::TAU;
+
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
+use mbs_runtime::{Function, Stepper, mechanism};
+
+/// Polar radius of a circle whose centre lies `beside` the curve's centre: e cos w + √(ρ² − e² sin² w).
+#[derive(Clone, Copy, Debug)]
+struct Eccentric {
+    beside: f64,
+    radius: f64,
+}
+
+impl Function<f64> for Eccentric {
+    const ORDER: usize = 3;
+
+    fn jet<const K: usize>(&self, w: f64) -> [f64; K] {
+        let (sine, cosine) = w.sin_cos();
+        let e = self.beside;
+        let inside = self.radius * self.radius - e * e * sine * sine;
+        let root = inside.sqrt();
+        // g = ρ² − e² sin² w and its derivatives; h = √g.
+        let g = [
+            -2.0 * e * e * sine * cosine,
+            -2.0 * e * e * (cosine * cosine - sine * sine),
+            8.0 * e * e * sine * cosine,
+        ];
+        let h1 = g[0] / (2.0 * root);
+        let h2 = (g[1] - 2.0 * h1 * h1) / (2.0 * root);
+        let h3 = (g[2] - 6.0 * h1 * h2) / (2.0 * root);
+        let all = [e * cosine + root, -e * sine + h1, -e * cosine + h2, e * sine + h3];
+        core::array::from_fn(|order| all.get(order).copied().unwrap_or(f64::NAN))
+    }
+}
+
+const CAM: Eccentric = Eccentric { beside: 0.008, radius: 0.025 };
+
+mechanism! {
+    /// A follower on a cam, its distance by the foot of the perpendicular.
+    pub mechanism ByFoot;
+    param speed: rad/s = 3000rpm;
+    function pitch: m(rad), C3, periodic TAU;
+    coord theta: rad = 0;
+    coord y: m = 30mm;
+    coord w: rad = 60deg;
+    let A = [0m, y];
+    let foot = pitch(w)*unit(w + theta);
+    let along = d(foot, w);
+    constraint perpendicular { dot(A - foot, along) == 0 [m^2]; }
+    branch nearest: dot(A - foot, d(along, w)) < dot(along, along);
+    drive shaft: theta == speed*t;
+    body follower { mass: 100gram, com: [0, y] }
+    tsda spring { from: [0, 90mm], to: [0, y], stiffness: 4000, length: 80mm }
+    contact face {
+        gap: dot(A - foot, [along.1, -along.0])/norm(along),
+        stiffness: 1e8,
+        exponent: 1.5,
+        depth: 1mm,
+        damping: 0.3
+    }
+    start theta = 0 rate speed;
+    start y = 34mm rate 0;
+}
+
+mechanism! {
+    /// The same from the distance of two centres.
+    pub mechanism ByCentres;
+    param speed: rad/s = 3000rpm;
+    coord theta: rad = 0;
+    coord y: m = 30mm;
+    drive shaft: theta == speed*t;
+    body follower { mass: 100gram, com: [0, y] }
+    tsda spring { from: [0, 90mm], to: [0, y], stiffness: 4000, length: 80mm }
+    contact face {
+        gap: norm([0m, y] - 8mm*unit(theta)) - 25mm,
+        stiffness: 1e8,
+        exponent: 1.5,
+        depth: 1mm,
+        damping: 0.3
+    }
+    start theta = 0 rate speed;
+    start y = 34mm rate 0;
+}
+
+/// Heights (m) of the follower over two turns.
+macro_rules! heights {
+    ($mechanism:expr) => {{
+        let mechanism = $mechanism;
+        let method: Explicit<DormandPrince8, Projection> = Explicit::default();
+        let run = Simulation::start_from_text(mechanism, method, 0.0).expect("it starts");
+        let mut run = run.with_tolerance(Tolerance::new(1e-11));
+        let mut found = Vec::new();
+        run.watch(2.0 * TAU / mechanism.speed, 200, |run| found.push(run.q()[1])).expect("it moves");
+        found
+    }};
+}
+
+#[test]
+fn a_contact_by_the_foot_of_the_perpendicular_is_exact() {
+    let (by_foot, by_centres) = (heights!(ByFoot::<_, f64>::new(CAM)), heights!(ByCentres::<f64>::default()));
+    let apart = by_foot.iter().zip(&by_centres).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let stroke = by_centres.iter().fold(0.0_f64, |most, y| most.max((y - by_centres[0]).abs()));
+    println!("contact by the foot: {apart:.1e} m of 1e-9, stroke {:.1} mm", 1e3 * stroke);
+    assert!(apart < 1e-9 && stroke > 5e-3, "{apart:e} {stroke}");
+}
+
+mechanism! {
+    /// A flat face that rises on a cam, and a second cam that a cam turns.
+    pub mechanism FlatAndPair;
+    function pitch: m(rad), C3, periodic TAU;
+    coord theta: rad = 0.3;
+    coord y: m = 26mm;
+    coord u: rad = 70deg;
+    let foot = pitch(u)*unit(u + theta);
+    let along = d(foot, u);
+    drive shaft: theta == 0.3 + 1 [rad/s]*t;
+    constraint touches { y == foot.1; }
+    constraint lies_flat { along.1 == 0m; }
+    branch upper: along.0 < 0m;
+
+    coord psi: rad = 1.9;
+    coord v: rad = -15deg;
+    coord w: rad = 75deg;
+    let one = pitch(v)*unit(v + theta);
+    let other = [60mm, 0mm] + pitch(w)*unit(w + psi);
+    let tangent = d(one, v);
+    constraint meets { one == other; }
+    constraint rolls { cross(tangent, d(other, w)) == 0 [m^2]; }
+    branch outside: dot(tangent, d(other, w)) < 0 [m^2];
+    out height: m = y;
+    out turned: rad = psi;
+}
+
+#[test]
+fn flat_faces_and_pairs_of_curves_meet_as_circles_do() {
+    let mut stepper =
+        Stepper::assemble(FlatAndPair::<_, f64>::new(CAM), [0.3, 0.027, 1.2, 1.9, -0.3, 1.3], 0.0)
+            .expect("an assembly");
+    let mut worst = [0.0_f64; 2];
+    // Further on the second cam is out of reach.
+    for step in 0..80 {
+        let t = f64::from(step) * 0.01;
+        stepper.advance_to(t).expect("a position");
+        let outputs = stepper.outputs();
+        let [height, turned] = [outputs.as_ref()[0].value, outputs.as_ref()[1].value];
+        let theta = 0.3 + t;
+        worst[0] = worst[0].max((height - (0.025 + 0.008 * theta.sin())).abs());
+        // Both centres stay two radii apart.
+        let [a, b] =
+            [[0.008 * theta.cos(), 0.008 * theta.sin()], [0.06 + 0.008 * turned.cos(), 0.008 * turned.sin()]];
+        worst[1] = worst[1].max(((b[0] - a[0]).hypot(b[1] - a[1]) - 0.05).abs());
+    }
+    println!("flat on a curve: {:.1e} m, curve on curve: {:.1e} m of 1e-14", worst[0], worst[1]);
+    assert!(worst.iter().all(|worst| *worst < 1e-14), "{worst:?}");
+}
