@@ -1,7 +1,7 @@
 //! Two tiers of checks: a change must pass the first, a release the second.
 
 use crate::shell::{command, exists, need, output, root, step};
-use crate::{browser, costs, documents, growth, instructions, lines, planted};
+use crate::{browser, costs, documents, fuzz, growth, instructions, lines, planted};
 
 /// The oldest compiler that the workspace names.
 const OLDEST: &str = "1.89";
@@ -54,6 +54,7 @@ pub fn full() -> Result<(), String> {
     need("npm", "install Node.js 20 or newer")?;
     documents::need_book()?;
     need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
+    need("cargo-fuzz", "`cargo install cargo-fuzz`")?;
     ci()?;
     for (package, test) in LONG {
         let only = ["--test", test];
@@ -72,6 +73,7 @@ pub fn full() -> Result<(), String> {
         &["run", "--release", "-p", "mbs-workbench", "--bin", "mbs", "--", "hard-cases", "--quick"],
     ))?;
     planted::run_all()?;
+    fuzz::run(60, false)?;
     oldest()
 }
 

@@ -4,6 +4,7 @@ mod browser;
 mod checks;
 mod costs;
 mod documents;
+mod fuzz;
 mod growth;
 mod instructions;
 mod lines;
@@ -17,8 +18,8 @@ const USAGE: &str = "\
 cargo xtask TASK
 
 ci                       what a change must pass: format, lints, documents, tests, counts of instructions
-full                     `ci`, tests with `long`, reports in a browser, the book, packages, growth, lines, costs, hard cases, planted faults, Rust 1.89
-                         where it is installed
+full                     `ci`, tests with `long`, reports in a browser, the book, packages, growth, lines, costs, hard cases, planted faults, fuzzing,
+                         Rust 1.89 where it is installed
 bench [OPTIONS]          kinematics, dynamics and linkages against their peers; `--docs` writes the tables of the book
 growth                   times that a compiler takes over long mechanisms
 instructions [--update]  instructions of evaluations and steps, compared with the stored counts or stored
@@ -26,6 +27,7 @@ lines [--update]         lines of LLVM code that the workbench costs a mechanism
 docs                     documentation of all crates without warnings, doc tests of README and book, the book
 browser                  reports of all mechanisms in headless Chromium
 costs                    `mbs cost` of all mechanisms, and of the pendulum with other programs
+fuzz [SECONDS] [--keep]  texts and calls by chance, a minute for each of three targets or as long as asked; `--keep` stores new inputs
 planted                  planted faults: each must turn a cell of the matrix of hard cases to wrong
 package                  packages of all crates, each compiled as a registry would have it
 words [--count]          reader's aid: doc comments that begin with a question word, sentences of more than 25 words";
@@ -53,6 +55,11 @@ fn main() -> ExitCode {
         ("docs", []) => documents::all(),
         ("browser", []) => browser::run(),
         ("costs", []) => costs::peers().and_then(|()| costs::index()),
+        ("fuzz", []) => fuzz::run(60, false),
+        ("fuzz", [seconds, rest @ ..]) if matches!(rest, [] | ["--keep"]) => {
+            let number = seconds.parse().map_err(|_| format!("`{seconds}` is no number of seconds"));
+            number.and_then(|seconds| fuzz::run(seconds, !rest.is_empty()))
+        }
         ("planted", []) => planted::run_all(),
         ("package", []) => documents::package(),
         ("words", []) => words::run(false),
