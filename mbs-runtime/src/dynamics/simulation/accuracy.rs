@@ -12,8 +12,8 @@ use crate::tolerances::accuracy;
 
 /// An adaptive run with two runs of coarser tolerances beside it, made by [`Simulation::with_error_estimate`].
 ///
-/// The run of ten times the tolerance differs from it by the error of that coarser run, a safe estimate of its own error. The run of
-/// a hundred times the tolerance tells if errors follow the tolerance. They do not where a motion is chaotic, or at rounding.
+/// The run of ten times the tolerance differs from it by the error of that coarser run. The run of a hundred times the tolerance tells
+/// how errors follow the tolerance, so what is left of them. They do not follow where a motion is chaotic, or at rounding.
 #[derive(Clone, Copy)]
 pub struct Estimated<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: usize> {
     fine: Simulation<S, X, R, N, M>,
@@ -38,14 +38,15 @@ impl<R: Real> ErrorEstimate<R> {
     /// That of the finest of three runs, each of a tenth of the tolerance of the one before. `looser` is the largest difference of the
     /// first two, `tighter` of the last two. `steps` are those of all three.
     ///
-    /// It is `tighter`, trusted where the steps differ enough to tell an error, and where `tighter` is smaller than `looser` as
-    /// errors of an order are.
+    /// It is what is left of a geometric series: `tighter` over the fall of the differences less 1. A fall counts up to 4, as a faster one may
+    /// be chance. It is trusted where the steps differ enough to tell an error, and where the differences fall as errors of an order do;
+    /// else it is `tighter`.
     pub fn of([looser, tighter]: [R; 2], steps: [u32; 3]) -> Self {
         let finer = |pair: &[u32]| matches!(pair, [few, many] if is_more(*few, *many));
         let [least, most] = accuracy::FALLS.map(R::constant);
         let falls = least * tighter <= looser && looser <= most * tighter;
         if falls && steps.windows(2).all(finer) {
-            ErrorEstimate::Trusted(tighter)
+            ErrorEstimate::Trusted(left_of(looser, tighter))
         } else {
             ErrorEstimate::Untrusted(tighter)
         }
@@ -65,6 +66,13 @@ impl<R: Real> ErrorEstimate<R> {
             ErrorEstimate::Untrusted(_) => None,
         }
     }
+}
+
+/// What is left of a geometric series behind two of its differences, the last one `tighter`. A fall that is faster than the largest that
+/// is trusted may be chance.
+fn left_of<R: Real>(looser: R, tighter: R) -> R {
+    let fall = (looser / tighter.max(R::constant(f64::MIN_POSITIVE))).min(R::constant(accuracy::TRUSTED));
+    tighter / (fall - R::constant(1.0))
 }
 
 /// `true` where `many` steps are so many more than `few` that the difference of both runs tells an error.
@@ -167,30 +175,33 @@ where
     }
 }
 
-/// Instants of a run at which it is compared: at one alone runs may agree by chance.
+/// Instants of a run to a wanted error at which it is compared: at one alone runs may agree by chance.
 const INSTANTS: usize = 4;
 
+/// The same of an estimate, which one run alone must not make small by chance.
+const INSTANTS_OF_ESTIMATE: usize = 16;
+
 /// Coordinates of a run at instants of equal distance, the end included.
-type Course<R, const N: usize> = [[R; N]; INSTANTS];
+type Course<R, const N: usize, const K: usize> = [[R; N]; K];
 
 /// A run with its course.
 type Followed<S, I, F, R, const N: usize, const M: usize> =
-    (Simulation<S, Explicit<I, F>, R, N, M>, Course<R, N>);
+    (Simulation<S, Explicit<I, F>, R, N, M>, Course<R, N, INSTANTS>);
 
 /// Moves `run` on to `until` (s); its coordinates on the way.
-fn followed<S, I, F, R, const N: usize, const M: usize>(
+fn followed<S, I, F, R, const N: usize, const M: usize, const K: usize>(
     run: &mut Simulation<S, Explicit<I, F>, R, N, M>,
     until: R,
-) -> Result<Course<R, N>, Failure>
+) -> Result<Course<R, N, K>, Failure>
 where
     S: Dynamic<R, N, M>,
     I: Embedded,
     F: Formulation<S, R, N, M>,
     R: Real,
 {
-    let mut course = [run.now.y.q; INSTANTS];
+    let mut course = [run.now.y.q; K];
     let mut places = course.iter_mut();
-    run.sample(until, INSTANTS as u32, |instant| {
+    run.sample(until, K as u32, |instant| {
         if let Some(place) = places.next() {
             *place = instant.y.q;
         }
@@ -199,7 +210,11 @@ where
 }
 
 /// Largest difference of two courses in the reference metric with these scales of the coordinates (N).
-fn difference<R: Real, const N: usize>(a: &Course<R, N>, b: &Course<R, N>, scales: &[R; N]) -> R {
+fn difference<R: Real, const N: usize, const K: usize>(
+    a: &Course<R, N, K>,
+    b: &Course<R, N, K>,
+    scales: &[R; N],
+) -> R {
     let pairs = a.iter().flatten().zip(b.iter().flatten()).zip(scales.iter().cycle());
     pairs.fold(R::constant(0.0), |largest, ((a, b), scale)| {
         let distance = ((*a - *b) / *scale).abs();
@@ -233,7 +248,7 @@ where
     /// Those of [`Simulation::advance_to`] for the run itself; nothing has changed then.
     pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
         let mut next = self.clone();
-        let fine = followed(&mut next.fine, until)?;
+        let fine: Course<R, N, INSTANTS_OF_ESTIMATE> = followed(&mut next.fine, until)?;
         next.coarser = next.coarser.and_then(|[mut coarsest, mut coarse]| {
             let before = coarsest.counts.evaluations + coarse.counts.evaluations;
             let courses = followed(&mut coarsest, until).and_then(|a| Ok([a, followed(&mut coarse, until)?]));
@@ -252,8 +267,8 @@ where
         Ok(())
     }
 
-    /// Largest error of the coordinates so far in the reference metric (rad, reference lengths), at four instants of each
-    /// [`advance_to`](Self::advance_to): that of the run of ten times the tolerance.
+    /// Largest error of the coordinates so far in the reference metric (rad, reference lengths), at 16 instants of each
+    /// [`advance_to`](Self::advance_to); see [`ErrorEstimate::of`].
     ///
     /// Without differences to tell it, an untrusted sum of the errors that the steps estimate.
     pub fn error_estimate(&self) -> ErrorEstimate<R> {
@@ -334,10 +349,7 @@ where
             let tells = is_finer(&fine.0, &middle.0) && is_finer(&middle.0, &coarse.0);
             let falls = tells && second * R::constant(accuracy::FALL) <= first;
             if falls {
-                // What is left of a geometric series; a fall that is faster may be chance.
-                let fall =
-                    (first / second.max(R::constant(f64::MIN_POSITIVE))).min(R::constant(accuracy::TRUSTED));
-                let left = second / (fall - R::constant(1.0));
+                let left = left_of(first, second);
                 best = Some(best.map_or(left, |best| best.min(left)));
                 if left <= wanted {
                     *self = Accurate { run: fine.0, estimate: Some(left), evaluations, ..*self };

@@ -58,7 +58,7 @@ fn estimated_error(
     }
     // Runs show instants of equal distance.
     let count = times.len() - 1;
-    let parts = if count % INSTANTS == 0 { INSTANTS } else { 1 };
+    let parts = if count.is_multiple_of(INSTANTS) { INSTANTS } else { 1 };
     let instants: Vec<f64> = times.iter().step_by(count / parts).copied().collect();
     let coarser = |ratio: f64| {
         let steps = Steps::Adaptive { pair, tolerance: ratio * tolerance };
