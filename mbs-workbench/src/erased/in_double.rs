@@ -131,6 +131,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::needless_borrow, reason = "the borrow is what tells both traits apart")]
     fn only_functions_without_other_numbers_are_taken_in_doubles() {
         assert!((&Given(Cube)).is_double());
         assert!(!(&Given(Line)).is_double());
