@@ -1,4 +1,4 @@
-// A tree of bodies in the plane with closed loops, moved by Runge-Kutta steps of order 4.
+// A tree of bodies with closed loops, moved by Runge-Kutta steps of order 4.
 #include <cmath>
 #include <pinocchio/multibody.hpp>
 #include <pinocchio/algorithm/aba.hpp>
@@ -18,11 +18,12 @@ using LoopData = PINOCCHIO_ALIGNED_STD_VECTOR(RigidConstraintData);
 struct Spring {
     JointIndex one, other;
     Point at_one, at_other;
-    double stiffness, length;
+    double stiffness, length, damping;
 };
 
-// bodies: parent (-1: ground), kind (0 hinge, 1 slide), six numbers: at, mass, centre of mass, inertia.
-// loops: body, place, body, place. springs: body (-1: ground), place, body, place, stiffness, length.
+// bodies: parent (-1: ground), kind (0 to 2: hinge about x, y, z; 3 to 5: slide along it), ten numbers: at, mass, centre of mass,
+// inertia about it along x, y, z.
+// loops: body, place, body, place. springs: body (-1: ground), place, body, place, stiffness, length, damping.
 // out: samples rows of joint values; nothing where samples is 0.
 extern "C" void run(int count, const int* parents, const int* kinds, const double* numbers, int loop_count,
                     const double* loops, int spring_count, const double* springs, const double* torques,
@@ -30,32 +31,32 @@ extern "C" void run(int count, const int* parents, const int* kinds, const doubl
                     double w, double* out) {
     const auto still = Eigen::Matrix3d::Identity();
     Model model;
-    model.gravity.linear(Point(gravity[0], gravity[1], 0));
+    model.gravity.linear(Point(gravity[0], gravity[1], gravity[2]));
     std::vector<JointIndex> joints;
     for (int i = 0; i < count; ++i) {
-        const double* b = numbers + 6 * i;
+        const double* b = numbers + 10 * i;
         const JointIndex parent = parents[i] < 0 ? 0 : joints[parents[i]];
-        const SE3 at(still, Point(b[0], b[1], 0));
-        const std::string name = "j" + std::to_string(i);
-        joints.push_back(kinds[i] == 0 ? model.addJoint(parent, JointModelRZ(), at, name)
-                                       : model.addJoint(parent, JointModelPX(), at, name));
-        model.appendBodyToJoint(joints.back(), Inertia(b[2], Point(b[3], b[4], 0), b[5] * Eigen::Matrix3d::Identity()),
-                                SE3::Identity());
+        const SE3 at(still, Point(b[0], b[1], b[2]));
+        const JointModel joint_models[] = {JointModelRX(), JointModelRY(), JointModelRZ(),
+                                           JointModelPX(), JointModelPY(), JointModelPZ()};
+        joints.push_back(model.addJoint(parent, joint_models[kinds[i]], at, "j" + std::to_string(i)));
+        const Eigen::Matrix3d about = Point(b[7], b[8], b[9]).asDiagonal();
+        model.appendBodyToJoint(joints.back(), Inertia(b[3], Point(b[4], b[5], b[6]), about), SE3::Identity());
     }
     Loops constraints;
     for (int k = 0; k < loop_count; ++k) {
-        const double* l = loops + 6 * k;
-        RigidConstraintModel loop(CONTACT_3D, model, joints[int(l[0])], SE3(still, Point(l[1], l[2], 0)),
-                                  joints[int(l[3])], SE3(still, Point(l[4], l[5], 0)), LOCAL);
+        const double* l = loops + 8 * k;
+        RigidConstraintModel loop(CONTACT_3D, model, joints[int(l[0])], SE3(still, Point(l[1], l[2], l[3])),
+                                  joints[int(l[4])], SE3(still, Point(l[5], l[6], l[7])), LOCAL);
         loop.baumgarte_corrector_parameters().Kp = w * w;
         loop.baumgarte_corrector_parameters().Kd = 2 * w;
         constraints.push_back(loop);
     }
     std::vector<Spring> pulls;
     for (int k = 0; k < spring_count; ++k) {
-        const double* s = springs + 8 * k;
-        pulls.push_back({s[0] < 0 ? 0 : joints[int(s[0])], joints[int(s[3])], Point(s[1], s[2], 0),
-                         Point(s[4], s[5], 0), s[6], s[7]});
+        const double* s = springs + 11 * k;
+        pulls.push_back({s[0] < 0 ? 0 : joints[int(s[0])], joints[int(s[4])], Point(s[1], s[2], s[3]),
+                         Point(s[5], s[6], s[7]), s[8], s[9], s[10]});
     }
     Data data(model);
     LoopData loop_data;
@@ -77,15 +78,17 @@ extern "C" void run(int count, const int* parents, const int* kinds, const doubl
                 const Point b = data.oMi[spring.other].act(spring.at_other);
                 const Point way = a - b;
                 const double length = way.norm();
-                const Point pull = spring.stiffness * (length - spring.length) / length * way;
+                // The derivative of the length by the joints; its product with the velocities is the rate.
+                Vector along = Vector::Zero(count);
                 for (const auto& [joint, place, sign] :
-                     {std::tuple(spring.other, b, 1.0), std::tuple(spring.one, a, -1.0)}) {
+                     {std::tuple(spring.other, b, -1.0), std::tuple(spring.one, a, 1.0)}) {
                     if (joint == 0) continue;
                     slope.setZero();
                     getJointJacobian(model, data, joint, WORLD, slope);
-                    const Point moment = place.cross(pull);
-                    tau += sign * (slope.topRows(3).transpose() * pull + slope.bottomRows(3).transpose() * moment);
+                    const Point direction = way / length, moment = place.cross(direction);
+                    along += sign * (slope.topRows(3).transpose() * direction + slope.bottomRows(3).transpose() * moment);
                 }
+                tau -= (spring.stiffness * (length - spring.length) + spring.damping * along.dot(v)) * along;
             }
         }
         if (constraints.empty()) return aba(model, data, q, v, tau);

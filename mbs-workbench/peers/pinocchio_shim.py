@@ -1,6 +1,7 @@
 """Pinocchio's C++ library behind a C function, compiled once an environment."""
 
 import ctypes
+import hashlib
 import os
 import subprocess
 import sys
@@ -12,7 +13,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 def library(cache, progress):
     """The function, compiled into the directory `cache` where it is not there yet."""
-    path = os.path.join(cache, "pinocchio_shim.so")
+    source = os.path.join(HERE, "pinocchio_shim.cpp")
+    # Another text has a library of its own.
+    with open(source, "rb") as file:
+        key = hashlib.sha256(file.read()).hexdigest()[:12]
+    path = os.path.join(cache, f"pinocchio_shim_{key}.so")
     if not os.path.exists(path):
         progress("compiling Pinocchio's C++ (some minutes, once)")
         prefix = os.path.join(sys.prefix, "lib", f"python3.{sys.version_info.minor}", "site-packages", "cmeel.prefix")
@@ -22,7 +27,7 @@ def library(cache, progress):
         command = [
             os.environ.get("CXX", "c++"), "-std=c++17", "-O3", "-march=native", "-DNDEBUG", "-shared", "-fPIC",
             "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
-            f"-I{include}", f"-I{eigen}", os.path.join(HERE, "pinocchio_shim.cpp"),
+            f"-I{include}", f"-I{eigen}", source,
             f"-L{prefix}/lib", "-lpinocchio_default", f"-Wl,-rpath,{prefix}/lib", "-o", draft,
         ]
         done = subprocess.run(command, capture_output=True, text=True)

@@ -1,4 +1,5 @@
-"""Multibody programs on a mechanism that a file describes as a tree of bodies with closed loops, in the plane.
+"""Multibody programs on a mechanism that a file describes as a tree of bodies with closed loops, in the plane. Trees in space, which have
+no loops, are in trees_in_space.py.
 
 The file has
 
@@ -17,6 +18,7 @@ Settings are those that the programs' documentation recommends for closed loops.
 """
 
 import numpy as np
+import trees_in_space
 from peers import ladder, tell
 
 # Frequency of Baumgarte's stabilisation times the length of the motion: errors of the loops decay many times within it.
@@ -87,6 +89,9 @@ def run_program(program, file, question):
     if file is None:
         reason = f"no description as a tree of bodies (a file peers/{question['name']}.py in the mechanism's crate)"
         tell(program=PROGRAMS[program], setting="", refused=f"cannot: {reason}")
+        return
+    if getattr(file, "SPACE", False):
+        trees_in_space.run_program(program, file, question)
         return
     tree = Tree(file, question)
     {"mujoco": mujoco, "exudyn": exudyn, "drake": drake, "pinocchio": pinocchio}[program](tree, question)
@@ -371,10 +376,13 @@ def pinocchio(tree, question):
 
     function = library(question["cache"], lambda words: tell(program="Pinocchio", progress=words))
     parents = [-1 if body["parent"] is None else body["parent"] for body in tree.bodies]
-    kinds = [1 if body["joint"] == "slide" else 0 for body in tree.bodies]
-    numbers = [[*body["at"], body["mass"], *body["com"], body["inertia"]] for body in tree.bodies]
-    loops = [[one, *p, other, *r] for one, p, other, r in tree.loops]
-    springs = [[-1 if one is None else one, *p, other, *r, stiffness, length] for one, p, other, r, stiffness, length in tree.springs]
+    kinds = [3 if body["joint"] == "slide" else 2 for body in tree.bodies]
+    numbers = [[*body["at"], 0, body["mass"], *body["com"], 0, *[body["inertia"]] * 3] for body in tree.bodies]
+    loops = [[one, *p, 0, other, *r, 0] for one, p, other, r in tree.loops]
+    springs = [
+        [-1 if one is None else one, *p, 0, other, *r, 0, stiffness, length, 0]
+        for one, p, other, r, stiffness, length in tree.springs
+    ]
     torques = np.zeros(len(tree.bodies))
     for body, torque in tree.torques:
         torques[body] += torque
@@ -383,7 +391,7 @@ def pinocchio(tree, question):
     def run(steps):
         def call(samples):
             out = np.zeros((max(samples, 1), len(tree.bodies)))
-            function(parents, kinds, numbers, loops, springs, torques, tree.gravity, tree.q0, tree.v0, tree.end, steps, samples, w, out)
+            function(parents, kinds, numbers, loops, springs, torques, [*tree.gravity, 0], tree.q0, tree.v0, tree.end, steps, samples, w, out)
             return out
 
         found = call(len(tree.times) - 1)

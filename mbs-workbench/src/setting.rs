@@ -79,6 +79,29 @@ pub enum Closing {
     Evaluations(u32),
 }
 
+/// Source of sines and cosines, a feature of `mbs-runtime`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kernel {
+    /// The kernels of the runtime, the same bits on all targets.
+    #[default]
+    Own,
+    /// The same with fused products: feature `fma`.
+    Fused,
+    /// Those of the crate `libm`: feature `libm`.
+    Library,
+}
+
+impl Kernel {
+    /// Feature of `mbs-runtime`; none of its own kernels.
+    pub fn feature(self) -> Option<&'static str> {
+        match self {
+            Kernel::Own => None,
+            Kernel::Fused => Some("fma"),
+            Kernel::Library => Some("libm"),
+        }
+    }
+}
+
 /// A setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Setting {
@@ -101,6 +124,8 @@ pub enum Setting {
         closing: Closing,
         /// Equal steps over the span.
         steps: u32,
+        /// Source of sines and cosines.
+        kernel: Kernel,
     },
 }
 
@@ -161,10 +186,15 @@ impl Setting {
     /// Name of the curve that the setting is a point of.
     pub fn curve(&self) -> String {
         let single = if self.numbers() == Numbers::Single { ", f32" } else { "" };
+        let feature = match self {
+            Setting::Kinematics { kernel, .. } => kernel.feature(),
+            Setting::Motion { .. } => None,
+        };
+        let feature = feature.map_or_else(String::new, |feature| format!(", feature {feature}"));
         match self {
             Setting::Motion { method, .. } => format!("{method}{single}"),
-            Setting::Kinematics { lanes: 1, closing, .. } => format!("Stepper, {closing}{single}"),
-            Setting::Kinematics { lanes, .. } => format!("Batch of {lanes}{single}"),
+            Setting::Kinematics { lanes: 1, closing, .. } => format!("Stepper, {closing}{single}{feature}"),
+            Setting::Kinematics { lanes, .. } => format!("Batch of {lanes}{single}{feature}"),
         }
     }
 

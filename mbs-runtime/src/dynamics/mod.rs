@@ -118,5 +118,5 @@ pub use model::method::Method;
 pub use model::metric::{Metric, Tolerance};
 pub use model::{Counts, Formulation, MethodWarning, Model, Solved};
 pub use simulation::Simulation;
-pub use simulation::accuracy::{Accurate, Estimated};
+pub use simulation::accuracy::{Accurate, ErrorEstimate, Estimated};
 pub use simulation::reading::Balance;

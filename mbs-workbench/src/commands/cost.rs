@@ -1,8 +1,7 @@
 //! `mbs cost`.
 
-use std::cell::RefCell;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
@@ -10,6 +9,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::assignment::{Assignment, assignment};
 use super::chosen::finite;
+use super::cost_extras::{ask_peers, valleys};
+use super::cost_kernels;
 use super::document::Output;
 use super::of_file::started;
 use super::report_files::{require_writable, write_report};
@@ -18,28 +19,25 @@ use super::{CommandError, atlas, cost_words, summary};
 use crate::catalogue::Catalogue;
 use crate::cost::advice::two_digits;
 use crate::cost::kinematics::driven_study;
-use crate::cost::moved::{Extent, MovedStudy, NoReference, moved_study};
-use crate::cost::peers::{Described, PeerPoint, Question, ask_all};
+use crate::cost::moved::{Extent, NoReference, moved_study};
 use crate::cost::perturbed::perturb;
 use crate::cost::picture::picture;
 use crate::cost::result::CostResult;
 use crate::cost::splines;
-use crate::double_double::DoubleDouble;
 use crate::erased::costs::Comparable;
 use crate::erased::facade::AnyEquations;
 use crate::forge::{Blueprint, Forge, Study};
 use crate::mismatch::{nearest, wrapped};
-use crate::setting::MotionMethod;
-use crate::tables::valley::{NamedLaw, Valley};
+use crate::setting::{Kernel, MotionMethod};
+use crate::tables::valley::NamedLaw;
 use crate::target_directory::target_directory;
 use crate::text_file::{TextFile, is_file};
-use crate::verify::generated_definition;
 
 #[derive(Args)]
 pub struct Arguments {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     #[arg(required_unless_present = "all")]
-    name: Option<String>,
+    pub(super) name: Option<String>,
     /// Study all mechanisms of the list, and write an index of their pictures
     #[arg(long, conflicts_with_all = ["name", "parameters", "until", "watch", "rust", "peers"])]
     all: bool,
@@ -60,7 +58,16 @@ pub struct Arguments {
     methods: Vec<String>,
     /// Fewer and shorter runs: an overview
     #[arg(long)]
-    quick: bool,
+    pub(super) quick: bool,
+    /// Compare the sines of motions from drives too, in programs of their own: the features `fma` and `libm` of the runtime
+    #[arg(long, conflicts_with = "all")]
+    kernels: bool,
+    /// Writes points of kinematics to a file, in place of a study
+    #[arg(long, hide = true, value_name = "FILE")]
+    points: Option<PathBuf>,
+    /// Reads points of other sines
+    #[arg(long, hide = true, value_name = "DIR")]
+    points_from: Option<PathBuf>,
     /// Compare with other programs, which pip installs: SciPy, CVODES, IDAS on CasADi's equations; MuJoCo, Exudyn, Drake, Pinocchio
     #[arg(long)]
     peers: bool,
@@ -87,27 +94,59 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let caller = Forge::of_caller(catalogue.first().map(|card| card.manifest.as_ref()));
     // Times of a program that is not optimised say nothing.
     let forge = Forge { release: true, ..caller };
-    let blueprint = if is_file(arguments.name()) {
+    let mut words: Vec<_> = std::env::args_os().skip(1).collect();
+    let mut is_driven = is_file(arguments.name());
+    let (blueprint, second) = if is_file(arguments.name()) {
         methods(&arguments.methods)?;
-        Blueprint::study_of_text(&Study::COST, &TextFile::read(arguments.name())?)?
+        (Blueprint::study_of_text(&Study::COST, &TextFile::read(arguments.name())?)?, None)
     } else {
         // What is wrong on the command line is said before anything is built.
         let target = Target::find(catalogue, arguments.name())?;
         let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
-        if !target.is_free() && arguments.is_for_forces() {
+        is_driven = !target.is_free();
+        if is_driven && arguments.is_for_forces() {
             return Err(driven(&target));
+        }
+        if !is_driven && arguments.kernels {
+            let name = target.name();
+            return Err(CommandError::Usage(format!(
+                "forces move `{name}`: `--kernels` is for motions from drives"
+            )));
         }
         watched(instance.equations(), &arguments.watch)?;
         methods(&arguments.methods)?;
-        let source = instance.equations().source();
-        let functions = instance.equations().functions();
-        Blueprint::study_of_card(&Study::COST, &forge, target.card(), (source, functions))?
+        let equations = instance.equations();
+        let own = type_of(equations);
+        let functions = equations.functions();
+        let of = |study: &Study| {
+            let text = (own.as_str(), equations.source(), functions);
+            Blueprint::study_of_card(study, &forge, target.card(), text)
+        };
+        // Functions that exist in `f64` alone are known by a first program that does not compile.
+        let second = if functions.is_empty() { None } else { Some(of(&Study::COST.in_doubles())?) };
+        (of(&Study::COST)?, second)
     };
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;
     }
-    let arguments = std::env::args_os().skip(1).collect();
-    studied(&forge, &blueprint, arguments)
+    if arguments.kernels && is_driven {
+        let directory = cost_kernels::compared(&forge, &blueprint, second.as_ref(), &words)?;
+        words.extend(["--points-from".into(), directory.into_os_string()]);
+    }
+    match (studied(&forge, &blueprint, words.clone()), second) {
+        (Err(CommandError::Failed(reason)), Some(second)) if reason.contains("Function<") => {
+            studied(&forge, &second, words)
+        }
+        (found, _) => found,
+    }
+}
+
+/// Name of the type of a mechanism: a scene has one of its own.
+pub(super) fn type_of(equations: &dyn AnyEquations) -> String {
+    match equations.scene() {
+        "AllEffects" => equations.type_name().to_string(),
+        scene => format!("{}{scene}", equations.type_name()),
+    }
 }
 
 /// Builds the program of a study and runs it.
@@ -119,8 +158,7 @@ pub(super) fn studied(
     started(forge, blueprint, arguments).map_err(|error| match error {
         CommandError::Failed(reason) if blueprint.origin.is_none() && reason.starts_with("error:") => {
             CommandError::Failed(format!(
-                "the study is built in a program of its own: what the card's constructor names must be public, and a function that \
-                 it passes must take every `Scalar`\n{reason}"
+                "the study is built in a program of its own: what the card's constructor names must be public\n{reason}"
             ))
         }
         error => error,
@@ -137,7 +175,7 @@ fn driven(target: &Target) -> CommandError {
 
 impl Arguments {
     /// The mechanism or file.
-    fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         self.name.as_deref().unwrap_or_default()
     }
 
@@ -252,7 +290,20 @@ pub fn study(
     let mut facts = Vec::new();
     let mut fact = |name: &str, value: String| facts.push([name.to_string(), value]);
     let mut peers = Vec::new();
-    let (points, width, second) = match make(&values) {
+    let compared = make(&values);
+    let doubles = match &compared {
+        Comparable::Still => Vec::new(),
+        Comparable::Driven(mechanism) => mechanism.doubles.clone(),
+        Comparable::Moved(mechanism) => mechanism.doubles.clone(),
+    };
+    if !doubles.is_empty() {
+        let words = format!(
+            "{}: both references have its digits, so their width is that of `f64`",
+            doubles.join(", ")
+        );
+        fact("functions in `f64` alone", words);
+    }
+    let (points, width, second) = match compared {
         Comparable::Still => {
             let name = target.name();
             return Err(CommandError::Usage(without(format!(
@@ -261,7 +312,17 @@ pub fn study(
         }
         Comparable::Driven(_) if arguments.is_for_forces() => return Err(driven(&target)),
         Comparable::Driven(mut mechanism) => {
-            let found = driven_study(&mut mechanism, until, longest, &mut progress).map_err(failed)?;
+            let own = (until, longest);
+            let mut found = driven_study(&mut mechanism, own, Kernel::Own, &mut progress).map_err(failed)?;
+            if let Some(path) = &arguments.points {
+                bar.finish_and_clear();
+                return cost_kernels::write(path, &found.points);
+            }
+            if let Some(directory) = &arguments.points_from {
+                for (name, words) in cost_kernels::read(directory, &mut found.points) {
+                    fact(&name, words);
+                }
+            }
             fact(
                 "reference",
                 "positions closed to 29 digits in double-double numbers; rates by differences of positions"
@@ -271,14 +332,14 @@ pub fn study(
                 "width of rates",
                 format!("{}, by the rows against differences of positions", two_digits(found.width)),
             );
-            (found.points, None, "acceleration")
+            (found.points, found.width_of_positions, "acceleration")
         }
         Comparable::Moved(mut mechanism) => {
             let mut found = moved_study(&mut mechanism, until, &extent, &mut progress).map_err(failed)?;
             progress("perturbed parameters", 1.0);
             perturb(&mut found.points, make, &values, until, &extent);
             for (leg, reference) in &found.references {
-                let events = match reference.events {
+                let events = match reference.contacts.len() {
                     0 => String::new(),
                     events => format!(", {events} contacts"),
                 };
@@ -357,68 +418,6 @@ pub fn study(
     }
 }
 
-/// Tables of the periodic functions of the caller.
-fn valleys(
-    equations: &dyn AnyEquations,
-    laws: &[NamedLaw],
-    progress: &mut dyn FnMut(&str, f64),
-) -> Vec<Valley> {
-    let mut found = Vec::new();
-    for (name, law) in laws {
-        let entry = equations.functions().iter().find(|entry| entry.name == *name);
-        let Some((entry, period)) = entry.and_then(|entry| Some((entry, entry.period?))) else { continue };
-        progress(&format!("tables of {name}"), 1.0);
-        found.push(Valley::of(name, [entry.unit, entry.argument_unit], law, period));
-    }
-    found
-}
-
-/// Runs of other programs on the motion of a study.
-fn ask_peers(
-    study: &MovedStudy,
-    target: &Target,
-    equations: &dyn AnyEquations,
-    arguments: &Arguments,
-    progress: &mut dyn FnMut(&str, f64),
-) -> Vec<PeerPoint> {
-    let Some(start) = study.judge().and_then(|reference| reference.shots.first()) else { return Vec::new() };
-    let doubles = |values: &[DoubleDouble]| values.iter().map(|value| value.high).collect::<Vec<f64>>();
-    let variables = equations.variables();
-    let v: Vec<f64> = (0..variables.len()).map(|index| equations.get(index).unwrap_or_default()).collect();
-    let parameters =
-        variables.iter().zip(&v).map(|(entry, value)| (entry.name.to_string(), (*value).into())).collect();
-    // Each pair of decades; of an overview fewer.
-    let digits = if arguments.quick { vec![4, 6, 8] } else { vec![4, 6, 8, 10, 12] };
-    let question = Question {
-        name: target.file_name().to_string(),
-        times: study.times.clone(),
-        q: doubles(&start.at.q),
-        qd: doubles(&start.at.qd),
-        z: doubles(&start.at.states),
-        v,
-        parameters,
-        digits,
-        longest: if arguments.quick { 0.3 } else { 1.5 },
-    };
-    let functions = equations.functions().iter().map(|function| function.name).collect::<Vec<_>>();
-    let definition = match functions[..] {
-        [] => generated_definition(equations).map_err(|error| error.to_string()),
-        _ => Err(format!("it calls functions of its crate ({})", functions.join(", "))),
-    };
-    // Beside the crate's manifest, or beside the file with the text.
-    let place = match is_file(arguments.name()) {
-        true => {
-            Path::new(arguments.name().split(':').next().unwrap_or_default()).parent().map(Path::to_path_buf)
-        }
-        false => Some(PathBuf::from(target.card().manifest)),
-    };
-    let tree = place.unwrap_or_default().join("peers").join(format!("{}.py", target.file_name()));
-    let progress = RefCell::new(progress);
-    ask_all(&question, &Described { definition, tree }, &|q, qd| study.errors_of(q, qd), &|words| {
-        progress.borrow_mut()(words, 1.0)
-    })
-}
-
 /// The command line that makes the same study.
 fn command(arguments: &Arguments) -> String {
     let mut words = vec!["mbs".to_string(), "cost".to_string(), arguments.name().to_string()];
@@ -439,7 +438,9 @@ fn options(arguments: &Arguments) -> Vec<String> {
             words.extend([name.to_string(), values.join(",")]);
         }
     }
-    for (name, is_given) in [("--quick", arguments.quick), ("--peers", arguments.peers)] {
+    let given =
+        [("--quick", arguments.quick), ("--peers", arguments.peers), ("--kernels", arguments.kernels)];
+    for (name, is_given) in given {
         if is_given {
             words.push(name.to_string());
         }

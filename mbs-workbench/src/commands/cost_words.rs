@@ -45,8 +45,8 @@ pub fn print(result: &CostResult, with_rust: bool, out: &mut dyn Write) -> Resul
     writeln!(out, "\n{} settings, {refused} refused", result.points.len())?;
     for point in result.wrong() {
         let Outcome::Done { errors, expected, .. } = &point.outcome else { continue };
-        let expected =
-            expected.map_or_else(String::new, |expected| format!(", expected {}", two_digits(expected)));
+        let expected = expected
+            .map_or_else(String::new, |expected| format!(", expected {}", two_digits(expected.error)));
         writeln!(out, "wrong: {}: error {}{expected}", point.setting, two_digits(errors.judged))?;
     }
     writeln!(out, "\n{}", result.sentence())?;

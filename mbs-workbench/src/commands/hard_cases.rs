@@ -90,7 +90,12 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
             return Err(driven(&target));
         }
         let source = instance.equations().source();
-        Blueprint::study_of_card(&Study::HARD_CASES, &forge, target.card(), (source, &[]))?
+        Blueprint::study_of_card(
+            &Study::HARD_CASES,
+            &forge,
+            target.card(),
+            (&super::cost::type_of(instance.equations()), source, &[]),
+        )?
     } else {
         hard_case_list::blueprint(arguments)?
     };

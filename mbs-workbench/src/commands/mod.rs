@@ -10,6 +10,8 @@ pub mod check;
 pub mod chosen;
 pub mod compare;
 pub mod cost;
+mod cost_extras;
+mod cost_kernels;
 mod cost_words;
 pub mod document;
 pub mod dof;

@@ -1,7 +1,9 @@
 //! The choice in one sentence, and as Rust.
 
-use crate::cost::points::{Point, cheapest, cheapest_in_lanes};
-use crate::setting::{Closing, FormulationName, ImplicitName, MotionMethod, Numbers, Resolution, Setting};
+use crate::cost::points::{Point, cheapest, cheapest_in_lanes, cheapest_with};
+use crate::setting::{
+    Closing, FormulationName, ImplicitName, Kernel, MotionMethod, Numbers, Resolution, Setting,
+};
 
 /// Two digits of a number.
 pub fn two_digits(value: f64) -> String {
@@ -59,6 +61,12 @@ pub fn sentence(points: &[Point], asked: f64) -> String {
     if let Some(lanes) = cheapest_in_lanes(points, asked).filter(|lanes| lanes.time < chosen.time) {
         text += &format!(" Many at once: {}, {}.", lanes.setting, time_text(lanes.time, true));
     }
+    for kernel in [Kernel::Fused, Kernel::Library] {
+        let faster = cheapest_with(points, asked, kernel).filter(|point| point.time < 0.95 * chosen.time);
+        if let (Some(point), Some(feature)) = (faster, kernel.feature()) {
+            text += &format!(" With the feature `{feature}`: {}.", time_text(point.time, true));
+        }
+    }
     let single = points.iter().filter(|point| point.setting.numbers() == Numbers::Single);
     let floor = single.filter_map(Point::error).fold(f64::INFINITY, f64::min);
     if floor.is_finite() {
@@ -70,7 +78,7 @@ pub fn sentence(points: &[Point], asked: f64) -> String {
 /// Statements of Rust that make the run of a setting for a mechanism made by `constructor`, up to `until` (s).
 pub fn rust(setting: &Setting, constructor: &str, until: f64) -> String {
     match setting {
-        Setting::Kinematics { numbers, lanes, closing, steps } => {
+        Setting::Kinematics { numbers, lanes, closing, steps, .. } => {
             kinematics(*numbers, *lanes, *closing, *steps, constructor, until)
         }
         Setting::Motion { numbers, method, resolution } => {

@@ -1,6 +1,10 @@
 //! Cost of accuracy: each setting of the solvers by its true error and its time.
 
 pub mod advice;
+#[cfg(test)]
+mod counts_tests;
+pub mod errors;
+pub mod kernels;
 pub mod kinematics;
 pub mod moved;
 pub mod peers;

@@ -2,7 +2,10 @@
 
 use std::time::Duration;
 
-use crate::cost::points::{Errors, Outcome, Point, Verdict};
+use mbs_runtime::dynamics::ErrorEstimate;
+
+use crate::cost::errors::{Sizes, apart, between, errors};
+use crate::cost::points::{Errors, Expected, Outcome, Point, Verdict};
 use crate::cost::reference::linear::worse;
 use crate::cost::reference::motion::Stuck;
 use crate::cost::reference::{Leg, Reference, reference};
@@ -31,6 +34,9 @@ const CHEAP: f64 = 2e-3;
 
 /// Runs of which the shortest time counts.
 const RUNS: u32 = 5;
+
+/// Least tolerance of references where a function of the caller has the digits of `f64`.
+const LEAST_OF_DOUBLES: f64 = 1e-13;
 
 /// Extent of a study.
 #[derive(Clone, Debug)]
@@ -66,91 +72,6 @@ pub struct MovedStudy {
 pub struct NoReference {
     /// Reason in words.
     pub reason: String,
-}
-
-/// Largest values of a motion, by which errors are measured.
-#[derive(Clone, Debug)]
-struct Sizes {
-    scales: Vec<f64>,
-    rate: f64,
-    reaction: f64,
-    energy: f64,
-    outputs: Vec<f64>,
-}
-
-/// Largest magnitude; 1 where all are 0.
-fn size(values: impl Iterator<Item = f64>) -> f64 {
-    let largest = values.map(f64::abs).fold(0.0, f64::max);
-    if largest > 0.0 { largest } else { 1.0 }
-}
-
-impl Sizes {
-    fn of(reference: &Reference, scales: Vec<f64>) -> Self {
-        let shots = || reference.shots.iter();
-        let rates =
-            shots().flat_map(|shot| shot.at.qd.iter().zip(&scales).map(|(qd, scale)| qd.high / scale));
-        let reactions = shots()
-            .flat_map(|shot| shot.observed.reaction.iter().zip(&scales).map(|(r, scale)| r.high * scale));
-        let energy = size(shots().map(|shot| shot.observed.kinetic.high));
-        let count = reference.shots.first().map_or(0, |shot| shot.observed.outputs.len());
-        let outputs = (0..count).map(|k| size(shots().map(move |shot| shot.observed.outputs[k].high)));
-        let (rate, reaction) = (size(rates), size(reactions));
-        let outputs = outputs.collect();
-        Sizes { rate, reaction, energy, outputs, scales }
-    }
-}
-
-/// Difference of a value and the reference, in `f64`.
-fn apart(value: f64, reference: D) -> f64 {
-    ((value - reference.high) - reference.low).abs()
-}
-
-/// Error of the judged quantity at one instant.
-fn judged(seen: &Seen, shot: &crate::cost::reference::Shot, sizes: &Sizes, watched: &[usize]) -> f64 {
-    if watched.is_empty() {
-        let pairs = seen.q.iter().zip(&shot.at.q).zip(&sizes.scales);
-        return pairs.map(|((q, exact), scale)| apart(*q, *exact) / scale).fold(0.0, worse);
-    }
-    let of = |k: &usize| apart(seen.observed.outputs[*k], shot.observed.outputs[*k]) / sizes.outputs[*k];
-    watched.iter().map(of).fold(0.0, worse)
-}
-
-fn errors(run: &[Seen], reference: &Reference, sizes: &Sizes, watched: &[usize]) -> Option<Errors> {
-    let parts = reference.shots.len().checked_sub(1)?;
-    let stride = parts / run.len().checked_sub(1)?.max(1);
-    let mut all = Vec::new();
-    let mut errors = Errors::default();
-    for (seen, shot) in run.iter().zip(reference.shots.iter().step_by(stride.max(1))) {
-        all.push(judged(seen, shot, sizes, watched));
-        let rate = seen.qd.iter().zip(&shot.at.qd).zip(&sizes.scales);
-        let rate = rate.map(|((qd, exact), scale)| apart(*qd, *exact) / scale / sizes.rate).fold(0.0, worse);
-        let reaction = seen.observed.reaction.iter().zip(&shot.observed.reaction).zip(&sizes.scales);
-        let reaction = reaction.map(|((r, exact), scale)| apart(*r, *exact) * scale / sizes.reaction);
-        errors.rate = worse(errors.rate, rate);
-        errors.second = worse(errors.second, reaction.fold(0.0, worse));
-        let energy = apart(seen.observed.energy, shot.observed.energy) / sizes.energy;
-        errors.energy = worse(errors.energy, energy);
-        errors.violation = worse(errors.violation, seen.violation);
-    }
-    errors.judged = all.iter().copied().fold(0.0, worse);
-    all.sort_by(f64::total_cmp);
-    errors.median = all.get(all.len() / 2).copied().unwrap_or(0.0);
-    Some(errors)
-}
-
-/// Largest difference of two runs in the judged quantity, at the instants that both have.
-fn between(a: &[Seen], b: &[Seen], sizes: &Sizes, watched: &[usize]) -> Option<f64> {
-    let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
-    let stride = many.len().checked_sub(1)? / few.len().checked_sub(1)?.max(1);
-    let difference = |(a, b): (&Seen, &Seen)| {
-        if watched.is_empty() {
-            let pairs = a.q.iter().zip(&b.q).zip(&sizes.scales);
-            return pairs.map(|((a, b), scale)| (a - b).abs() / scale).fold(0.0, worse);
-        }
-        let of = |k: &usize| (a.observed.outputs[*k] - b.observed.outputs[*k]).abs() / sizes.outputs[*k];
-        watched.iter().map(of).fold(0.0, worse)
-    };
-    Some(few.iter().zip(many.iter().step_by(stride.max(1))).map(difference).fold(0.0, worse))
 }
 
 /// Resolutions of a curve from coarse to fine.
@@ -203,11 +124,13 @@ pub fn moved_study(
         });
         return Err(no_reference(reasons.collect::<Vec<_>>().join("; ")));
     }
-    let scales = mechanism.exact.scales();
+    let metric = [mechanism.exact.scales(), mechanism.exact.row_scales()];
     let of = |leg: Leg| references.iter().find(|(own, reference)| *own == leg && whole(reference));
     let any = of(Leg::Collocated).or_else(|| of(Leg::Extrapolated)).map(|(_, reference)| reference);
     let any = any.ok_or_else(|| no_reference("no reference is whole".to_string()))?;
-    let sizes = Sizes::of(any, scales);
+    let double = mechanism.runs.iter().find(|(numbers, _)| *numbers == Numbers::Double);
+    let unique = |t: f64, q: &[f64]| double.map_or_else(Vec::new, |(_, runs)| runs.unique(t, q));
+    let sizes = Sizes::of(any, metric, &unique);
     let width = match (of(Leg::Extrapolated), of(Leg::Collocated)) {
         (Some((_, a)), Some((_, b))) => Some(apart_legs(a, b, &sizes, &extent.watched)),
         _ => None,
@@ -256,8 +179,7 @@ impl MovedStudy {
     /// Errors of coordinates and velocities at the instants. What is not given is NaN, and all of it where instants are missing.
     pub fn errors_of(&self, q: &[Vec<f64>], qd: Option<&[Vec<f64>]>) -> Errors {
         let none = f64::NAN;
-        let mut errors =
-            Errors { judged: none, median: none, rate: none, second: none, energy: none, violation: none };
+        let mut errors = Errors::unknown();
         let Some(reference) = self.judge().filter(|reference| reference.shots.len() == q.len()) else {
             return errors;
         };
@@ -293,7 +215,9 @@ fn best(
     if coarse.stuck.is_some() {
         return coarse;
     }
-    let fine = reference(exact, leg, start, times, extent.tolerance, budget.mul_f64(2.0));
+    let tolerance =
+        if mechanism.doubles.is_empty() { extent.tolerance } else { extent.tolerance.max(LEAST_OF_DOUBLES) };
+    let fine = reference(exact, leg, start, times, tolerance, budget.mul_f64(2.0));
     if fine.stuck.is_none() { fine } else { coarse }
 }
 
@@ -323,7 +247,7 @@ fn curve(
         return Vec::new();
     }
     let mut points: Vec<Point> = Vec::new();
-    let mut last: Option<(Vec<Seen>, u64)> = None;
+    let mut coarser = Coarser::default();
     let mut gained_nothing = 0;
     for resolution in ladder(method, numbers) {
         let setting = Setting::Motion { numbers, method, resolution };
@@ -341,15 +265,14 @@ fn curve(
                     time: f64::NAN,
                     perturbed: None,
                 });
-                last = None;
+                coarser = Coarser::default();
                 continue;
             }
         };
-        let Some(errors) = errors(&seen, reference, sizes, &extent.watched) else { continue };
-        // Runs of the same steps tell nothing of their error.
-        let is_finer = last.as_ref().is_none_or(|(_, steps)| effort.steps as f64 > FINER * *steps as f64);
-        let coarser = last.as_ref().filter(|_| is_finer);
-        let expected = coarser.and_then(|(last, _)| between(last, &seen, sizes, &extent.watched));
+        // What a run makes of a contact that it misses shows in its times alone.
+        let contacts = runs.contacts(method, resolution, times).unwrap_or_default();
+        let Some(errors) = errors(&seen, &contacts, reference, sizes, &extent.watched) else { continue };
+        let expected = coarser.expected((seen, effort.steps), method.is_adaptive(), sizes, &extent.watched);
         let verdict = verdict((numbers, method), effort.unfinished, errors.judged, expected, width);
         let before = points.last().and_then(|point| match point.outcome {
             Outcome::Done { errors, .. } => Some(errors.judged),
@@ -364,15 +287,51 @@ fn curve(
             time: f64::NAN,
             perturbed: None,
         });
-        if is_finer {
-            last = Some((seen, effort.steps));
-        }
         // The next one takes at least as long again.
         if effort.elapsed.as_secs_f64() > extent.longest || gained_nothing >= 2 {
             break;
         }
     }
     points
+}
+
+/// Coarser runs of a curve, each with its steps, the last one last.
+#[derive(Default)]
+struct Coarser {
+    runs: Vec<(Vec<Seen>, u64)>,
+    /// Difference of the last two.
+    difference: Option<f64>,
+}
+
+impl Coarser {
+    /// The error of the coarser one of the last run and `run`, and `run` is the last one from then on. Of adaptive steps it is trusted as
+    /// [`ErrorEstimate`] is, whose runs are the last three of the curve. Runs of the same steps tell nothing of their error.
+    fn expected(
+        &mut self,
+        run: (Vec<Seen>, u64),
+        is_adaptive: bool,
+        sizes: &Sizes,
+        watched: &[usize],
+    ) -> Option<Expected> {
+        let Some((last, steps)) = self.runs.last() else {
+            self.runs.push(run);
+            return None;
+        };
+        if run.1 as f64 <= FINER * *steps as f64 {
+            return None;
+        }
+        let error = between(last, &run.0, sizes, watched)?;
+        let before = self.difference.replace(error);
+        self.runs.push(run);
+        let of_three = before.zip(self.runs.last_chunk::<3>()).map(|(before, last)| {
+            let steps = last.each_ref().map(|(_, steps)| u32::try_from(*steps).unwrap_or(u32::MAX));
+            ErrorEstimate::of([before, error], steps).trusted().is_some()
+        });
+        if self.runs.len() > 2 {
+            self.runs.remove(0);
+        }
+        Some(Expected { error, is_trusted: !is_adaptive || of_three == Some(true) })
+    }
 }
 
 /// Errors that rounding alone explains.
@@ -387,7 +346,7 @@ fn verdict(
     (numbers, method): (Numbers, MotionMethod),
     unfinished: u64,
     error: f64,
-    expected: Option<f64>,
+    expected: Option<Expected>,
     width: Option<f64>,
 ) -> Verdict {
     // A penalty changes the problem: its error stays whatever the steps.
@@ -395,8 +354,8 @@ fn verdict(
     let width = width.unwrap_or(0.0);
     match expected {
         _ if error <= WIDTHS * width => Verdict::Hollow,
-        Some(expected) if error > (WRONG * expected).max(rounding(numbers)) => {
-            if is_other || unfinished > 0 {
+        Some(expected) if error > (WRONG * expected.error).max(rounding(numbers)) => {
+            if is_other || unfinished > 0 || !expected.is_trusted {
                 Verdict::Untrusted
             } else {
                 Verdict::Wrong

@@ -14,10 +14,11 @@ use crate::cost::points::Errors;
 use crate::verify::environment::Environment;
 
 /// Scripts by name of file.
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 7] = [
     ("peers.py", include_str!("../../peers/peers.py")),
     ("equations.py", include_str!("../../peers/equations.py")),
     ("trees.py", include_str!("../../peers/trees.py")),
+    ("trees_in_space.py", include_str!("../../peers/trees_in_space.py")),
     ("pinocchio_shim.py", include_str!("../../peers/pinocchio_shim.py")),
     ("pinocchio_shim.cpp", include_str!("../../peers/pinocchio_shim.cpp")),
     ("with_casadi.py", include_str!("../../oracle/with_casadi.py")),

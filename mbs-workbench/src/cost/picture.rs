@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::cost::points::{Outcome, Point, front};
+use crate::cost::points::{Outcome, Point, Verdict, front};
 use crate::cost::result::{CostResult, style};
 use crate::output::page::escaped;
 use crate::output::svg::{COLOURS, label, open};
@@ -66,6 +66,21 @@ fn peers(result: &CostResult) -> Vec<(&str, Vec<(f64, f64)>)> {
     curves
 }
 
+/// Colours of a mark: filled where the error is known, hollow next to the width of the reference, dashed where the run warns, red where
+/// it is wrong.
+fn look(point: &Point, colour: &str) -> String {
+    match point.outcome {
+        Outcome::Done { verdict: Verdict::Hollow, .. } => format!("fill=\"white\" stroke=\"{colour}\""),
+        Outcome::Done { verdict: Verdict::Untrusted, .. } => {
+            format!("fill=\"white\" stroke=\"{colour}\" stroke-dasharray=\"2 1.5\"")
+        }
+        Outcome::Done { verdict: Verdict::Wrong, .. } => {
+            "fill=\"white\" stroke=\"#d0021b\" stroke-width=\"2.5\"".to_string()
+        }
+        _ => format!("fill=\"{colour}\""),
+    }
+}
+
 /// The curves that reach the front in colour, all other points in grey, the front as a line, the error asked for.
 pub fn picture(result: &CostResult) -> String {
     let done = || result.points.iter().filter_map(|point| Some((point, error(point)?)));
@@ -92,12 +107,8 @@ pub fn picture(result: &CostResult) -> String {
         power_of_ten(&mut svg, LEFT - 8.0, y + 4.0, "end", power);
     }
     for (point, error) in done() {
-        let _ = writeln!(
-            svg,
-            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"2\" fill=\"#bbb\"/>",
-            time.at(point.time),
-            size.at(error)
-        );
+        let (x, y, look) = (time.at(point.time), size.at(error), look(point, "#bbb"));
+        let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\" {look}/>");
     }
     let on_front = front(&result.points);
     let mut names: Vec<String> = Vec::new();
@@ -124,7 +135,8 @@ pub fn picture(result: &CostResult) -> String {
             let words = escaped(&format!("{}: {error:.1e}", point.setting));
             let _ = writeln!(
                 svg,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.5\" fill=\"{colour}\"><title>{words}</title></circle>"
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.5\" {}><title>{words}</title></circle>",
+                look(point, colour)
             );
         }
         let y = TOP + 20.0 * k as f64 + 10.0;

@@ -1,7 +1,7 @@
 //! Points of the study: a setting with its true error, its time and its counts.
 
 use crate::erased::timed_runs::Effort;
-use crate::setting::{FormulationName, MotionMethod, Setting};
+use crate::setting::{FormulationName, Kernel, MotionMethod, Setting};
 
 /// Errors of a run at its instants: the largest counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,10 +14,31 @@ pub struct Errors {
     pub rate: f64,
     /// Of accelerations (drives), or of Φ_qᵀ λ (forces), over the largest of the motion.
     pub second: f64,
+    /// Of the multipliers that are unique, over the largest of the motion; NaN where none is.
+    pub multiplier: f64,
+    /// Largest error (s) of the times at which contacts close or open; infinite where a contact is missed, NaN where there are none.
+    pub contact: f64,
     /// Of the energy, over the largest kinetic energy of the motion; 0 where there are no masses.
     pub energy: f64,
     /// Largest violation of a row in the reference metric.
     pub violation: f64,
+}
+
+impl Errors {
+    /// Nothing is known: all NaN.
+    pub fn unknown() -> Self {
+        let none = f64::NAN;
+        Errors {
+            judged: none,
+            median: none,
+            rate: none,
+            second: none,
+            multiplier: none,
+            contact: none,
+            energy: none,
+            violation: none,
+        }
+    }
 }
 
 /// Judgement of a point.
@@ -27,10 +48,20 @@ pub enum Verdict {
     Right,
     /// The error is below 100 widths of the reference: it is known with that width alone.
     Hollow,
-    /// The run itself warns of its result, or its method changes the problem.
+    /// An error of more than ten times the expected one, of which there is a warning: by the run itself, by an estimate that is not
+    /// trusted, or by a method that changes the problem.
     Untrusted,
     /// `Ok` with an error of more than ten times the expected one.
     Wrong,
+}
+
+/// Error that coarser points of a curve let expect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// The error.
+    pub error: f64,
+    /// `true` where it is trusted: as [`ErrorEstimate`](mbs_runtime::dynamics::ErrorEstimate) is, for adaptive steps.
+    pub is_trusted: bool,
 }
 
 /// Result of a setting.
@@ -40,8 +71,8 @@ pub enum Outcome {
     Done {
         /// True errors.
         errors: Errors,
-        /// Error that the next coarser point of its curve lets expect; none of the coarsest.
-        expected: Option<f64>,
+        /// Error that coarser points of its curve let expect; none of the coarsest.
+        expected: Option<Expected>,
         /// Judgement.
         verdict: Verdict,
     },
@@ -65,9 +96,17 @@ pub struct Point {
 }
 
 impl Point {
-    /// `true` for a run of one mechanism; lanes are of use for many at once.
+    /// `true` for a run of one mechanism with the runtime's own sines; lanes are of use for many at once.
     pub fn is_single(&self) -> bool {
-        matches!(self.setting, Setting::Motion { .. } | Setting::Kinematics { lanes: 1, .. })
+        matches!(
+            self.setting,
+            Setting::Motion { .. } | Setting::Kinematics { lanes: 1, kernel: Kernel::Own, .. }
+        )
+    }
+
+    /// `true` for many mechanisms at once, with the runtime's own sines.
+    fn is_in_lanes(&self) -> bool {
+        matches!(self.setting, Setting::Kinematics { lanes: 2.., kernel: Kernel::Own, .. })
     }
 
     /// `true` for a setting to choose: without a stabilisation the error grows with the time, however small it is at the end.
@@ -131,7 +170,13 @@ pub fn cheapest(points: &[Point], asked: f64) -> Option<&Point> {
 
 /// The cheapest trusted point of many mechanisms at once that reaches `asked` with a margin; its time is that of one.
 pub fn cheapest_in_lanes(points: &[Point], asked: f64) -> Option<&Point> {
-    reaching(points, asked).filter(|point| !point.is_single()).min_by(|a, b| a.time.total_cmp(&b.time))
+    reaching(points, asked).filter(|point| point.is_in_lanes()).min_by(|a, b| a.time.total_cmp(&b.time))
+}
+
+/// The cheapest trusted point of one mechanism with these sines that reaches `asked` with a margin.
+pub fn cheapest_with(points: &[Point], asked: f64, kernel: Kernel) -> Option<&Point> {
+    let is_of = |point: &&Point| matches!(point.setting, Setting::Kinematics { lanes: 1, kernel: own, .. } if own == kernel);
+    reaching(points, asked).filter(is_of).min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
 /// Points whose error is below `asked`, for perturbed parameters too. Where these were not run, the margin and the next finer point of the
@@ -161,8 +206,13 @@ mod tests {
     use crate::setting::{Closing, Numbers};
 
     fn point(error: f64, time: f64, verdict: Verdict) -> Point {
-        let setting =
-            Setting::Kinematics { numbers: Numbers::Double, lanes: 1, closing: Closing::Closed, steps: 1 };
+        let setting = Setting::Kinematics {
+            numbers: Numbers::Double,
+            lanes: 1,
+            closing: Closing::Closed,
+            steps: 1,
+            kernel: Kernel::Own,
+        };
         let errors = Errors { judged: error, ..Errors::default() };
         let outcome = Outcome::Done { errors, expected: None, verdict };
         Point { setting, outcome, effort: Effort::default(), time, perturbed: None }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::cost::advice::{rust, sentence};
+use crate::cost::advice::{rust, sentence, two_digits};
 use crate::cost::peers::{PeerPoint, PeerRun};
 use crate::cost::points::{Errors, Outcome, Point, Verdict, cheapest, front};
 use crate::cost::splines::{self, PageValley};
@@ -101,10 +101,17 @@ struct PagePoint {
     median: f64,
     rate: f64,
     second: f64,
+    multiplier: f64,
+    /// Error (s) of the times of contacts, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact: Option<String>,
     energy: f64,
     violation: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     expected: Option<f64>,
+    /// `true` where the expected error is not trusted.
+    #[serde(skip_serializing_if = "core::ops::Not::not")]
+    doubted: bool,
     /// Largest error for perturbed parameters.
     #[serde(skip_serializing_if = "Option::is_none")]
     perturbed: Option<f64>,
@@ -126,9 +133,12 @@ impl PagePoint {
             median: errors.median,
             rate: errors.rate,
             second: errors.second,
+            multiplier: errors.multiplier,
+            contact: of_contacts(errors.contact),
             energy: errors.energy,
             violation: errors.violation,
             expected: None,
+            doubted: false,
             perturbed: None,
             verdict: "",
             front: false,
@@ -144,6 +154,15 @@ impl PagePoint {
         let refused = Some(reason.to_string());
         let none = PagePoint::done(label, &Errors::default(), 0.0);
         PagePoint { refused, error: None, verdict: "refused", ..none }
+    }
+}
+
+/// The error (s) of the times of contacts in words; none where there are none.
+fn of_contacts(error: f64) -> Option<String> {
+    match error {
+        error if error.is_nan() => None,
+        error if error.is_finite() => Some(format!("{} s", two_digits(error))),
+        _ => Some("missed".to_string()),
     }
 }
 
@@ -228,7 +247,8 @@ impl CostResult {
             let mut page = match &point.outcome {
                 Outcome::Refused(reason) => PagePoint::refused(point.setting.label(), reason),
                 Outcome::Done { errors, expected, verdict: judgement } => PagePoint {
-                    expected: *expected,
+                    expected: expected.map(|expected| expected.error),
+                    doubted: expected.is_some_and(|expected| !expected.is_trusted),
                     perturbed: point.perturbed.filter(|error| error.is_finite()),
                     verdict: verdict(*judgement),
                     front: on_front.contains(&index),
@@ -314,12 +334,13 @@ impl CostResult {
     /// One line a point.
     pub fn csv(&self) -> String {
         let mut text = format!(
-            "numbers,curve,setting,result,error,median error,velocity error,{} error,energy error,violation,expected error,time ({}),evaluations,corrections,steps,on the front\n",
+            "numbers,curve,setting,result,error,median error,velocity error,{} error,multiplier error,contact error (s),energy error,violation,expected error,expected error is trusted,time ({}),evaluations,corrections,steps,on the front\n",
             self.second,
             self.unit()
         );
         let on_front = front(&self.points);
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+        let known = |value: f64| if value.is_nan() { String::new() } else { format!("{value:e}") };
         for (index, point) in self.points.iter().enumerate() {
             let head = [
                 point.setting.numbers().name().to_string(),
@@ -334,9 +355,12 @@ impl CostResult {
                     format!("{:e}", errors.median),
                     format!("{:e}", errors.rate),
                     format!("{:e}", errors.second),
+                    known(errors.multiplier),
+                    known(errors.contact),
                     format!("{:e}", errors.energy),
                     format!("{:e}", errors.violation),
-                    expected.map_or_else(String::new, |expected| format!("{expected:e}")),
+                    expected.map_or_else(String::new, |expected| format!("{:e}", expected.error)),
+                    expected.map_or_else(String::new, |expected| expected.is_trusted.to_string()),
                     format!("{:.4}", point.time),
                     point.effort.evaluations.to_string(),
                     point.effort.corrections.to_string(),
@@ -356,8 +380,8 @@ impl CostResult {
                     let errors = [errors.judged, errors.median, errors.rate];
                     let mut rest = vec!["other program".to_string()];
                     rest.extend(errors.map(number));
-                    // Reactions, energy, violation and the expected error are not known.
-                    rest.extend([const { String::new() }; 4]);
+                    // Reactions, multipliers, contacts, energy, violation and the expected error are not known.
+                    rest.extend([const { String::new() }; 7]);
                     rest.extend([format!("{time:.4}"), evaluations.to_string()]);
                     rest.extend(["", "", "false"].map(str::to_string));
                     rest

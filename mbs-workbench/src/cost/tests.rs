@@ -13,7 +13,7 @@ use crate::erased::dynamics::direct_dynamics::{Pair, Rule};
 use crate::erased::dynamics::integrators::Integrators;
 use crate::erased::exact::{Exact, ExactEquations, Moving, Observed, Rows, Sizes, Terms};
 use crate::erased::timed_runs::Runs;
-use crate::setting::{Closing, FormulationName, IntegratorName, MotionMethod, Numbers, Setting};
+use crate::setting::{Closing, FormulationName, IntegratorName, Kernel, MotionMethod, Numbers, Setting};
 
 mbs_runtime::mechanism! {
     /// A01 of the IFToMM benchmark: a point mass on a rod, in Cartesian coordinates.
@@ -24,6 +24,17 @@ mbs_runtime::mechanism! {
     constraint rod { dot(p, p) == 1 [m^2]; }
     start p = [-1, 0] rate [0, 0];
     out height: m = p.1;
+}
+
+mbs_runtime::mechanism! {
+    /// The pendulum with its row written twice.
+    pub mechanism TwiceHeld;
+    coord p: [m; 2] = [-1, 0];
+    body bob { mass: 1, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint rod { dot(p, p) == 1 [m^2]; }
+    constraint again redundant { 2*dot(p, p) == 2 [m^2]; }
+    start p = [-1, 0] rate [0, 0];
 }
 
 mbs_runtime::mechanism! {
@@ -48,7 +59,8 @@ mbs_runtime::mechanism! {
 }
 
 /// Positions (m) and velocities (m/s) at 1 s, from elliptic functions.
-const AT_ONE: [f64; 4] = [0.9862917511318753, -0.16501085312554117, 0.2969055159163158, 1.7746436411126556];
+pub(super) const AT_ONE: [f64; 4] =
+    [0.9862917511318753, -0.16501085312554117, 0.2969055159163158, 1.7746436411126556];
 
 fn exact() -> Exact<<Pendulum as InNumbers<D>>::Mechanism, 2, 1> {
     Exact::of(Pendulum::default().in_numbers())
@@ -152,7 +164,7 @@ fn a_contact_is_located_by_both_legs() {
     let (a, b) = (run(Leg::Extrapolated), run(Leg::Collocated));
     for leg in [&a, &b] {
         // Touch at 0.1428 s, off again about 25 ms later.
-        assert_eq!((leg.stuck, leg.events), (None, 2));
+        assert_eq!((leg.stuck, leg.contacts.len()), (None, 2));
         // The floor's energy is no potential of the text.
         let open = leg.shots.iter().filter(|shot| shot.at.q[0].high > 0.0);
         let drift: Vec<f64> = open.map(|shot| (shot.observed.energy.high - 0.981).abs()).collect();
@@ -161,7 +173,7 @@ fn a_contact_is_located_by_both_legs() {
     assert!(apart(&a, &b) < 1e-12, "{:e}", apart(&a, &b));
 }
 
-fn moved<S>(mechanism: S) -> Box<MovedCosts>
+pub(super) fn moved<S>(mechanism: S) -> Box<MovedCosts>
 where
     S: Reveal<f64> + Clone + InNumbers<D> + InNumbers<f32>,
     S: InNumbers<mbs_runtime::Lanes<f64, 4>> + InNumbers<mbs_runtime::Lanes<f64, 8>>,
@@ -215,7 +227,7 @@ fn positions_of_drives_are_known_in_all_digits() {
     let Comparable::Driven(mut mechanism) = comparable(&CrankSlider::default()) else {
         panic!("a drive moves it")
     };
-    let study = driven_study(&mut mechanism, 3.0, 0.2, &mut |_, _| ()).expect("references");
+    let study = driven_study(&mut mechanism, (3.0, 0.2), Kernel::Own, &mut |_, _| ()).expect("references");
     assert!(study.width < 1e-18, "{:e}", study.width);
     let closed = |point: &&super::points::Point| {
         matches!(
@@ -282,7 +294,58 @@ fn a_fault_in_one_weight_lifts_its_curve() {
     let mut right = moved(Pendulum::default());
     right.runs.retain(|(numbers, _)| *numbers == Numbers::Double);
     let run = Runs::<Pendulum, Faulty, f64, 2, 1>::of(Pendulum::default());
-    let mut faulty = MovedCosts { exact: Box::new(exact()), runs: vec![(Numbers::Double, Box::new(run))] };
+    let mut faulty = MovedCosts {
+        exact: Box::new(exact()),
+        runs: vec![(Numbers::Double, Box::new(run))],
+        doubles: Vec::new(),
+    };
     let (right, faulty) = (best(&mut right), best(&mut faulty));
     assert!(right < 1e-10 && faulty > 1e-8, "{right:e} {faulty:e}");
+}
+
+#[test]
+fn contacts_of_a_run_are_compared_with_those_of_the_reference() {
+    let method = MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8);
+    let mut mechanism = moved(Ball::default());
+    let own = extent(vec![
+        method,
+        MotionMethod::Explicit(FormulationName::Projection, IntegratorName::RungeKutta4),
+    ]);
+    let study = moved_study(&mut mechanism, 0.3, &own, &mut |_, _| ()).expect("references");
+    let of = |point: &super::points::Point| match point.outcome {
+        Outcome::Done { errors, .. } => errors,
+        Outcome::Refused(_) => panic!("{point:?}"),
+    };
+    let fine: Vec<_> =
+        study.points.iter().filter(|point| point.setting.to_string().contains("1e-11")).collect();
+    let errors = of(fine[0]);
+    assert!(errors.contact < 1e-10 && errors.rate < 1e-9, "{errors:?}");
+    // Coarse steps pass the contact late; velocities are compared at the time shifted by that.
+    let coarse = of(&study.points[1]);
+    assert!(coarse.contact > 1e-9 && coarse.contact < 1e-3, "{coarse:?}");
+    let fixed = study.points.iter().filter(|point| point.setting.curve() == "Projection with RungeKutta4");
+    let fixed: Vec<f64> = fixed.map(|point| of(point).contact).collect();
+    let finest = fixed.iter().copied().fold(1.0, f64::min);
+    assert!(finest < 1e-7 && finest < 1e-2 * fixed[0], "{fixed:?}");
+}
+
+#[test]
+fn multipliers_are_compared_where_they_are_unique_alone() {
+    let method = MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8);
+    let mut mechanism = moved(Pendulum::default());
+    let study = moved_study(&mut mechanism, 0.5, &extent(vec![method]), &mut |_, _| ()).expect("references");
+    let best = |study: &super::moved::MovedStudy| {
+        let errors = study.points.iter().filter_map(|point| match point.outcome {
+            Outcome::Done { errors, .. } => Some(errors),
+            Outcome::Refused(_) => None,
+        });
+        errors.min_by(|a, b| a.judged.total_cmp(&b.judged)).expect("a run")
+    };
+    let errors = best(&study);
+    assert!(errors.multiplier < 1e-9 && errors.second < 1e-9 && errors.contact.is_nan(), "{errors:?}");
+    // The rod is written twice: of its two multipliers neither is unique, and their sum on the coordinates is.
+    let mut mechanism = moved(TwiceHeld::default());
+    let study = moved_study(&mut mechanism, 0.5, &extent(vec![method]), &mut |_, _| ()).expect("references");
+    let errors = best(&study);
+    assert!(errors.multiplier.is_nan() && errors.second < 1e-9 && errors.judged < 1e-9, "{errors:?}");
 }

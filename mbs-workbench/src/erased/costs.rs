@@ -21,12 +21,26 @@ pub enum Comparable {
     Moved(Box<MovedCosts>),
 }
 
+impl Comparable {
+    /// With the names of functions that exist in `f64` alone.
+    pub fn with_doubles(mut self, names: Vec<&'static str>) -> Self {
+        match &mut self {
+            Comparable::Still => {}
+            Comparable::Driven(mechanism) => mechanism.doubles = names,
+            Comparable::Moved(mechanism) => mechanism.doubles = names,
+        }
+        self
+    }
+}
+
 /// A mechanism that drives move.
 pub struct DrivenCosts {
     /// In double-double numbers.
     pub exact: Box<dyn ExactPositions>,
     /// By type of number and number of lanes.
     pub runs: Vec<(Numbers, u32, Box<dyn TimedSteps>)>,
+    /// Functions of the caller that exist in `f64` alone.
+    pub doubles: Vec<&'static str>,
 }
 
 /// A mechanism that forces move.
@@ -35,12 +49,36 @@ pub struct MovedCosts {
     pub exact: Box<dyn ExactEquations>,
     /// By type of number.
     pub runs: Vec<(Numbers, Box<dyn TimedRuns>)>,
+    /// Functions of the caller that exist in `f64` alone.
+    pub doubles: Vec<&'static str>,
 }
 
 /// A function from parameters and inputs by their indices to all that a comparison needs of the mechanism that an expression makes:
-/// `comparable!(Wiper::default())`.
+/// `comparable!(Wiper::default())`. With the names of some functions of its caller, which exist in `f64` alone, their constructor
+/// `Wiper::new` takes them in all numbers: `comparable!(wiper(), Wiper, [lift])`.
 #[macro_export]
 macro_rules! comparable {
+    ($make:expr, $kind:ident, [$($function:ident),* $(,)?] $(,)?) => {
+        |values: &[(usize, f64)]| {
+            #[allow(unused_imports)]
+            use $crate::erased::in_double::{Given, InAllNumbers, InDoubleAlone};
+            let given = $make;
+            let mut doubles = ::std::vec::Vec::new();
+            $(if (&Given(::core::clone::Clone::clone(&given.$function))).is_double() {
+                doubles.push(::core::stringify!($function));
+            })*
+            let mut mechanism = $kind::new($((&Given(::core::clone::Clone::clone(&given.$function))).chosen()),*);
+            for index in 0..$crate::erased::costs::variables(&given) {
+                if let ::core::option::Option::Some(value) = ::mbs_runtime::Mechanism::get(&given, index) {
+                    ::mbs_runtime::Mechanism::set(&mut mechanism, index, value);
+                }
+            }
+            for (index, value) in values {
+                ::mbs_runtime::Mechanism::set(&mut mechanism, *index, *value);
+            }
+            $crate::erased::costs::comparable(&mechanism).with_doubles(doubles)
+        }
+    };
     ($make:expr $(,)?) => {
         |values: &[(usize, f64)]| {
             let mut mechanism = $make;
@@ -50,6 +88,11 @@ macro_rules! comparable {
             $crate::erased::costs::comparable(&mechanism)
         }
     };
+}
+
+/// Number of components of parameters and inputs.
+pub fn variables<S: Mechanism<f64, N, M>, const N: usize, const M: usize>(_: &S) -> usize {
+    S::VARIABLES.len()
 }
 
 /// All that the comparison needs of `mechanism`.
@@ -77,7 +120,7 @@ where
         ExactForm::Moved(exact) => {
             let runs = [(Numbers::Double, double.moved), (Numbers::Single, single.moved)];
             let runs = runs.into_iter().filter_map(|(numbers, runs)| Some((numbers, runs?))).collect();
-            Comparable::Moved(Box::new(MovedCosts { exact, runs }))
+            Comparable::Moved(Box::new(MovedCosts { exact, runs, doubles: Vec::new() }))
         }
         ExactForm::Driven(exact) => {
             let runs = [
@@ -89,7 +132,7 @@ where
                 (Numbers::Single, 8, in_lanes::<S, f32, 8>(mechanism)),
             ];
             let runs = runs.into_iter().filter_map(|(numbers, lanes, run)| Some((numbers, lanes, run?)));
-            Comparable::Driven(Box::new(DrivenCosts { exact, runs: runs.collect() }))
+            Comparable::Driven(Box::new(DrivenCosts { exact, runs: runs.collect(), doubles: Vec::new() }))
         }
     }
 }

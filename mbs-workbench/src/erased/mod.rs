@@ -16,6 +16,8 @@ pub mod exact;
 pub mod experiment;
 pub mod facade;
 pub mod formulas;
+#[cfg(feature = "program")]
+pub mod in_double;
 pub mod lanes;
 pub mod masses;
 #[cfg(feature = "program")]

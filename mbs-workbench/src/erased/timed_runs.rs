@@ -4,8 +4,9 @@ use core::marker::PhantomData;
 use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, Baumgarte, Counts, Explicit, Extrapolated, Formulation, GeneralizedAlpha, Method,
-    Penalty, Projection, Simulation, Tolerance, Unstabilized, VelocityTransformation,
+    AugmentedLagrangian, Baumgarte, Counts, Determinacy, Direction, Explicit, Extrapolated, Formulation,
+    GeneralizedAlpha, Method, Penalty, Projection, Simulation, Tolerance, Unstabilized,
+    VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure, FailureKind, Partitioned, Real};
 
@@ -71,6 +72,26 @@ pub trait TimedRuns {
         times: &[f64],
         see: Option<&mut dyn FnMut(Seen)>,
     ) -> Result<Effort, Failure>;
+    /// `true` for each multiplier that is unique at `t` (s) and coordinates `q` (N): M. None is where that is not known.
+    fn unique(&self, t: f64, q: &[f64]) -> Vec<bool>;
+    /// Times (s) at which each contact closes or opens in the run of these settings.
+    ///
+    /// # Errors
+    /// Those of the run.
+    fn contacts(
+        &self,
+        method: MotionMethod,
+        resolution: Resolution,
+        times: &[f64],
+    ) -> Result<Vec<Vec<f64>>, Failure>;
+}
+
+/// Kind of a run.
+enum Purpose<'a> {
+    /// The motion alone, or with its instants.
+    Motion(See<'a>),
+    /// Its changes of contacts.
+    Contacts(&'a mut Vec<Vec<f64>>),
 }
 
 /// A mechanism in numbers `R`, moved by integrators of `I`.
@@ -144,7 +165,7 @@ where
         integrator: I::Adaptive,
         tolerance: f64,
         times: &[f64],
-        see: See<'_>,
+        purpose: Purpose<'_>,
     ) -> Result<Effort, Failure> {
         let (first, last) = ends(times);
         let method = Explicit::new(integrator, formulation);
@@ -153,13 +174,29 @@ where
         let mut run = start.with_tolerance(tolerance).without_work();
         let began = Instant::now();
         let show = |run: &Simulation<S, _, R, N, M>, see: &mut dyn FnMut(Seen)| see(seen(run));
-        match see {
-            Some(see) => {
+        match purpose {
+            Purpose::Contacts(found) => {
+                // A text without contacts compiles no search.
+                if const { !S::CONTACTS.is_empty() } {
+                    for (contact, times) in found.iter_mut().enumerate() {
+                        let mut own = run.clone();
+                        let gaps = Gaps::of(&own, contact);
+                        while own.t() < R::constant(last)
+                            && own.advance_until_event(R::constant(last), Direction::Any, |t, q, qd| {
+                                gaps.at(t, q, qd)
+                            })?
+                        {
+                            times.push(own.t().to_f64());
+                        }
+                    }
+                }
+            }
+            Purpose::Motion(Some(see)) => {
                 show(&run, see);
                 let samples = u32::try_from(times.len().saturating_sub(1)).unwrap_or(u32::MAX);
                 run.watch(R::constant(last), samples, |run| show(run, see))?;
             }
-            None => run.advance_to(R::constant(last))?,
+            Purpose::Motion(None) => run.advance_to(R::constant(last))?,
         }
         Ok(effort(run.counts(), began))
     }
@@ -169,15 +206,37 @@ where
         method: AnyMethod<'_, S, R, N, M>,
         steps: u32,
         times: &[f64],
-        see: See<'_>,
+        purpose: Purpose<'_>,
     ) -> Result<Effort, Failure> {
         let (first, last) = ends(times);
         let start = Simulation::start_from_text(self.mechanism.clone(), method, R::constant(first))?;
         let mut run = start.without_work();
         let began = Instant::now();
-        let Some(see) = see else {
-            run.step_to(R::constant(last), steps)?;
-            return Ok(effort(run.counts(), began));
+        let see = match purpose {
+            Purpose::Motion(Some(see)) => see,
+            Purpose::Motion(None) => {
+                run.step_to(R::constant(last), steps)?;
+                return Ok(effort(run.counts(), began));
+            }
+            Purpose::Contacts(found) => {
+                if const { !S::CONTACTS.is_empty() } {
+                    for (contact, times) in found.iter_mut().enumerate() {
+                        let mut own = run.clone();
+                        let gaps = Gaps::of(&own, contact);
+                        for step in 1..=steps {
+                            let end = first + (last - first) * f64::from(step) / f64::from(steps);
+                            let end = R::constant(if step == steps { last } else { end });
+                            while own.t() < end
+                                && own
+                                    .step_until_event(end, 1, Direction::Any, |t, q, qd| gaps.at(t, q, qd))?
+                            {
+                                times.push(own.t().to_f64());
+                            }
+                        }
+                    }
+                }
+                return Ok(effort(run.counts(), began));
+            }
         };
         see(seen(&run));
         let parts = u32::try_from(times.len().saturating_sub(1)).unwrap_or(u32::MAX).max(1);
@@ -187,6 +246,46 @@ where
             see(seen(&run));
         }
         Ok(effort(run.counts(), began))
+    }
+}
+
+/// The gap of one contact of a mechanism, with its drives and inputs moved on.
+struct Gaps<S, R> {
+    mechanism: S,
+    from: R,
+    contact: usize,
+}
+
+impl<S, R> Gaps<S, R> {
+    fn of<X, const N: usize, const M: usize>(run: &Simulation<S, X, R, N, M>, contact: usize) -> Self
+    where
+        S: Dynamic<R, N, M>,
+        X: Method<S, R, N, M>,
+        R: Real,
+    {
+        Gaps { mechanism: run.mechanism().clone(), from: run.t(), contact }
+    }
+
+    fn at<const N: usize, const M: usize>(&self, t: R, q: &[R; N], qd: &[R; N]) -> R
+    where
+        S: Dynamic<R, N, M>,
+        R: Real,
+    {
+        let mut mechanism = self.mechanism.clone();
+        if S::HAS_SIGNALS {
+            mechanism.carry_signals(&self.mechanism, t - self.from);
+        }
+        if !S::PHASES.is_empty() {
+            mechanism.advance_phases(self.from, t);
+        }
+        let parameters = mechanism.parameters();
+        let position = mechanism.position(&parameters, q, t);
+        let (mut index, mut found) = (0, R::constant(f64::NAN));
+        mechanism.gaps(&parameters, &position, qd, |gap| {
+            found = if index == self.contact { gap.gap } else { found };
+            index += 1;
+        });
+        found
     }
 }
 
@@ -234,6 +333,46 @@ where
         times: &[f64],
         see: See<'_>,
     ) -> Result<Effort, Failure> {
+        self.moved(method, resolution, times, Purpose::Motion(see))
+    }
+
+    fn contacts(
+        &self,
+        method: MotionMethod,
+        resolution: Resolution,
+        times: &[f64],
+    ) -> Result<Vec<Vec<f64>>, Failure> {
+        let mut found = vec![Vec::new(); S::CONTACTS.len()];
+        if !found.is_empty() {
+            self.moved(method, resolution, times, Purpose::Contacts(&mut found))?;
+        }
+        Ok(found)
+    }
+
+    fn unique(&self, t: f64, q: &[f64]) -> Vec<bool> {
+        let mut place = [R::constant(0.0); N];
+        place.iter_mut().zip(q).for_each(|(place, q)| *place = R::constant(*q));
+        let parameters = self.mechanism.parameters();
+        let position = self.mechanism.position(&parameters, &place, R::constant(t));
+        let found = Determinacy::<R, M>::of::<S, N>(&self.mechanism, &parameters, &position, R::constant(t));
+        found.map_or_else(|_| vec![false; M], |found| found.unique.to_vec())
+    }
+}
+
+impl<S, I, R, const N: usize, const M: usize> Runs<S, I, R, N, M>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+    I: Integrators,
+    R: Real,
+{
+    /// The run of these settings, for a purpose.
+    fn moved(
+        &self,
+        method: MotionMethod,
+        resolution: Resolution,
+        times: &[f64],
+        purpose: Purpose<'_>,
+    ) -> Result<Effort, Failure> {
         let (baumgarte, penalty, projection) =
             (Baumgarte::default(), Penalty::default(), Projection::default());
         let formulation = |name| -> AnyFormulation<'_, S, R, N, M> {
@@ -253,7 +392,7 @@ where
                     _ => Some(I::pair(Pair::Order8)),
                 };
                 let Some(pair) = pair else { return Err(too_large::<N, M>()) };
-                self.adaptive(formulation(name), pair, tolerance, times, see)
+                self.adaptive(formulation(name), pair, tolerance, times, purpose)
             }
             (MotionMethod::Explicit(name, integrator), Resolution::Steps(steps)) => {
                 let rule = match integrator {
@@ -261,7 +400,7 @@ where
                     _ => Rule::RungeKutta4,
                 };
                 let method = Explicit::new(I::rule(rule), formulation(name));
-                self.fixed(&method, steps, times, see)
+                self.fixed(&method, steps, times, purpose)
             }
             (MotionMethod::Implicit(name), resolution) => {
                 let alpha = GeneralizedAlpha::default();
@@ -271,7 +410,7 @@ where
                     ImplicitName::GeneralizedAlpha => &alpha,
                 };
                 let Resolution::Steps(steps) = resolution else { return Err(too_large::<N, M>()) };
-                self.fixed(method, steps, times, see)
+                self.fixed(method, steps, times, purpose)
             }
         }
     }

@@ -45,6 +45,8 @@ pub struct Study {
     program: &'static str,
     /// `true` where the program takes the functions of the caller.
     with_laws: bool,
+    /// `true` where functions of the caller that exist in `f64` alone are taken in all numbers.
+    in_doubles: bool,
 }
 
 impl Study {
@@ -55,6 +57,7 @@ impl Study {
         make: "comparable",
         program: "cost_program",
         with_laws: true,
+        in_doubles: false,
     };
     /// That of `mbs hard-cases`.
     pub const HARD_CASES: Study = Study {
@@ -63,14 +66,22 @@ impl Study {
         make: "variable",
         program: "hard_cases_program",
         with_laws: false,
+        in_doubles: false,
     };
 
-    /// The constants that make the mechanism of `constructor`, and its `functions` of the caller.
-    fn item(&self, constructor: &str, functions: &[FunctionEntry]) -> String {
+    /// The study for functions of the caller that exist in `f64` alone.
+    pub const fn in_doubles(self) -> Study {
+        Study { in_doubles: true, ..self }
+    }
+
+    /// The constants that make the mechanism of `constructor`, of type `own`, and its `functions` of the caller.
+    fn item(&self, (constructor, own): (&str, &str), functions: &[FunctionEntry]) -> String {
         let Study { kind, make, .. } = self;
         let laws = if self.with_laws { laws(constructor, functions) } else { String::new() };
+        let names: Vec<&str> = functions.iter().map(|function| function.name).collect();
+        let names = if self.in_doubles { format!(", {own}, [{}]", names.join(", ")) } else { String::new() };
         format!(
-            "pub const STUDIED: fn(&[(usize, f64)]) -> ::mbs_workbench::{kind} = ::mbs_workbench::{make}!({constructor}); {laws}"
+            "pub const STUDIED: fn(&[(usize, f64)]) -> ::mbs_workbench::{kind} = ::mbs_workbench::{make}!({constructor}{names}); {laws}"
         )
     }
 
@@ -106,7 +117,7 @@ impl Blueprint {
     /// # Errors
     /// As [`of_text`](Self::of_text).
     pub fn study_of_text(study: &Study, text: &TextFile) -> Result<Self, ForgeError> {
-        let item = study.item(&format!("{}::default()", text.type_name()), &[]);
+        let item = study.item((&format!("{}::default()", text.type_name()), &text.type_name()), &[]);
         Self::for_text(text, study.suffix, &item, |module| study.call(&format!("{module}::")))
     }
 
@@ -157,7 +168,7 @@ impl Blueprint {
             main += &format!(
                 "\nmod {module} {{\n::mbs_runtime::mechanism! {{\n{text}\n}}\n\
                  pub const CARD: ::mbs_workbench::card::Card = ::mbs_workbench::card!({constructor});\n{}\n}}\n",
-                study.item(&constructor, &[])
+                study.item((&constructor, kind), &[])
             );
             list += &format!("({module:?}, {module}::CARD, {module}::STUDIED), ");
         }
@@ -213,7 +224,7 @@ impl Blueprint {
         })
     }
 
-    /// A study of the mechanism of `card` with this text and these functions of the caller. It is made from the text alone if the
+    /// A study of the mechanism of `card` with this type, text and these functions of the caller. It is made from the text alone if the
     /// constructor is that of the text's defaults; else on top of the library, which is built anew for it.
     ///
     /// # Errors
@@ -222,7 +233,7 @@ impl Blueprint {
         study: &Study,
         forge: &Forge,
         card: &Card,
-        (source, functions): (&str, &[FunctionEntry]),
+        (own, source, functions): (&str, &str, &[FunctionEntry]),
     ) -> Result<Self, ForgeError> {
         let Card { constructor, module, manifest, .. } = *card;
         let name = format!("{}{}", card.file_name(), study.suffix);
@@ -230,7 +241,7 @@ impl Blueprint {
             format!(
                 "pub const CARD: ::mbs_workbench::card::Card = ::mbs_workbench::card::Card {{ constructor: {constructor:?}, \
                  module: {module:?}, manifest: {manifest:?}, ..::mbs_workbench::card!({constructor}) }};\n{}\n",
-                study.item(constructor, functions)
+                study.item((constructor, own), functions)
             )
         };
         let kind = constructor.strip_suffix("::default()").unwrap_or_default();
@@ -281,6 +292,14 @@ impl Blueprint {
             units: None,
             is_measured: true,
         }
+    }
+
+    /// The same program with a feature of the runtime.
+    pub fn with_feature(mut self, feature: &str) -> Self {
+        self.manifest =
+            self.manifest.replacen("features = []", &format!("features = [{}]", quoted(feature)), 1);
+        self.name = format!("{}_{feature}", self.name);
+        self
     }
 
     /// `Cargo.toml` of the crate called `package`.
@@ -367,7 +386,7 @@ fn libraries(forge: &Forge, manifest: &Path) -> Result<Vec<Library>, ForgeError>
 fn dependencies(libraries: &[Library]) -> String {
     let path = |name: &str| quoted(&sources::folder().join(name).display().to_string());
     let mut lines = format!(
-        "mbs-runtime = {{ path = {}, default-features = false }}\nmbs-workbench = {{ path = {} }}\n",
+        "mbs-runtime = {{ path = {}, default-features = false, features = [] }}\nmbs-workbench = {{ path = {} }}\n",
         path("mbs-runtime"),
         path("mbs-workbench")
     );

@@ -70,6 +70,10 @@ impl Forge {
             // Of the program itself alone: what it depends on is not built anew.
             command.args(["--", "-C", "symbol-mangling-version=v0", "-C", "codegen-units=16"]);
         }
+        if !self.flags.is_empty() {
+            let given = std::env::var("RUSTFLAGS").unwrap_or_default();
+            command.env("RUSTFLAGS", format!("{given} {}", self.flags).trim());
+        }
         // Settings of cargo and the toolchain are those of the caller.
         command
             .current_dir(&self.workspace)

@@ -32,6 +32,8 @@ pub struct Forge {
     pub workspace: PathBuf,
     /// `true` for an optimised program.
     pub release: bool,
+    /// Flags of the compiler for all crates, beside those of the environment; empty: none.
+    pub flags: &'static str,
 }
 
 /// Reason why there is no program, with the cure.
@@ -91,6 +93,7 @@ impl Forge {
             target: std::path::absolute(&target).unwrap_or(target),
             workspace,
             release: !cfg!(debug_assertions),
+            flags: "",
         }
     }
 
@@ -117,6 +120,7 @@ impl Forge {
             profiles.as_bytes(),
             state.as_bytes(),
             &[u8::from(self.release)],
+            self.flags.as_bytes(),
         ]);
         let works = self.target.join("mbs");
         let package = format!("{}-{key}", blueprint.name);

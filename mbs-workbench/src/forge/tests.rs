@@ -35,7 +35,7 @@ fn forge(name: &str, script: &str) -> Forge {
     fs::set_permissions(&cargo, fs::Permissions::from_mode(0o755)).expect("a program");
     fs::write(folder.join("Cargo.lock"), "# versions\n").expect("a lock file");
     fs::write(folder.join("Cargo.toml"), "[workspace]\n[profile.dev]\nopt-level = 1\n").expect("a manifest");
-    Forge { cargo: cargo.into(), target: folder.join("target"), workspace: folder, release: false }
+    Forge { cargo: cargo.into(), target: folder.join("target"), workspace: folder, release: false, flags: "" }
 }
 
 fn calls(forge: &Forge) -> Vec<String> {

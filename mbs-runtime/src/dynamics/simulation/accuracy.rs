@@ -10,16 +10,74 @@ use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::accuracy;
 
-/// An adaptive run with a run of ten times its tolerance beside it, made by [`Simulation::with_error_estimate`].
+/// An adaptive run with two runs of coarser tolerances beside it, made by [`Simulation::with_error_estimate`].
 ///
-/// The difference of both is the error of the coarser one, so a safe estimate of the error of the finer one. It is of use where
-/// errors follow the tolerance; a motion that is chaotic beyond its horizon has differences as large as the motion.
+/// The run of ten times the tolerance differs from it by the error of that coarser run. The run of a hundred times the tolerance tells
+/// how errors follow the tolerance, so what is left of them. They do not follow where a motion is chaotic, or at rounding.
 #[derive(Clone, Copy)]
 pub struct Estimated<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: usize> {
     fine: Simulation<S, X, R, N, M>,
-    coarse: Simulation<S, X, R, N, M>,
-    /// Largest difference so far.
-    largest: R,
+    /// Runs of a hundred and ten times the tolerance; none after one of them failed.
+    coarser: Option<[Simulation<S, X, R, N, M>; 2]>,
+    /// Largest differences so far: of both coarser runs, and of the fine one from the next coarser one.
+    differences: [R; 2],
+    /// Right-hand sides of the coarser runs.
+    evaluations: u64,
+}
+
+/// Estimated error of a run, in the reference metric (rad, reference lengths).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ErrorEstimate<R> {
+    /// An error at least 0.3 times and at most 30 times the true one.
+    Trusted(R),
+    /// A number that no such bounds hold for: errors do not follow the tolerance.
+    Untrusted(R),
+}
+
+impl<R: Real> ErrorEstimate<R> {
+    /// That of the finest of three runs, each of a tenth of the tolerance of the one before. `looser` is the largest difference of the
+    /// first two, `tighter` of the last two. `steps` are those of all three.
+    ///
+    /// It is what is left of a geometric series: `tighter` over the fall of the differences less 1. A fall counts up to 4, as a faster one may
+    /// be chance. It is trusted where the steps differ enough to tell an error, and where the differences fall as errors of an order do;
+    /// else it is `tighter`.
+    pub fn of([looser, tighter]: [R; 2], steps: [u32; 3]) -> Self {
+        let finer = |pair: &[u32]| matches!(pair, [few, many] if is_more(*few, *many));
+        let [least, most] = accuracy::FALLS.map(R::constant);
+        let falls = least * tighter <= looser && looser <= most * tighter;
+        if falls && steps.windows(2).all(finer) {
+            ErrorEstimate::Trusted(left_of(looser, tighter))
+        } else {
+            ErrorEstimate::Untrusted(tighter)
+        }
+    }
+
+    /// The number, trusted or not.
+    pub fn value(self) -> R {
+        match self {
+            ErrorEstimate::Trusted(value) | ErrorEstimate::Untrusted(value) => value,
+        }
+    }
+
+    /// The error, where it is trusted.
+    pub fn trusted(self) -> Option<R> {
+        match self {
+            ErrorEstimate::Trusted(value) => Some(value),
+            ErrorEstimate::Untrusted(_) => None,
+        }
+    }
+}
+
+/// What is left of a geometric series behind two of its differences, the last one `tighter`. A fall that is faster than the largest that
+/// is trusted may be chance.
+fn left_of<R: Real>(looser: R, tighter: R) -> R {
+    let fall = (looser / tighter.max(R::constant(f64::MIN_POSITIVE))).min(R::constant(accuracy::TRUSTED));
+    tighter / (fall - R::constant(1.0))
+}
+
+/// `true` where `many` steps are so many more than `few` that the difference of both runs tells an error.
+fn is_more(few: u32, many: u32) -> bool {
+    f64::from(many) >= accuracy::FINER * f64::from(few)
 }
 
 /// An adaptive run to a wanted error, made by [`Simulation::with_accuracy`].
@@ -39,7 +97,7 @@ where
     F: Formulation<S, R, N, M> + Clone,
     R: Real,
 {
-    /// With a run of ten times the tolerance beside it, which tells the error.
+    /// With runs of ten and a hundred times the tolerance beside it, which tell the error.
     ///
     /// ```
     /// use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
@@ -58,14 +116,18 @@ where
     /// let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f64)?;
     /// let mut run = run.with_tolerance(Tolerance::new(1e-9)).with_error_estimate();
     /// run.advance_to(2.0)?;
-    /// assert!(run.error_estimate() < 1e-6);
+    /// assert!(run.error_estimate().trusted().is_some_and(|error| error < 1e-6));
     /// # Ok::<(), mbs_runtime::Failure>(())
     /// ```
     pub fn with_error_estimate(self) -> Estimated<S, Explicit<I, F>, R, N, M> {
         let Tolerance { relative, absolute } = self.tolerance;
-        let ten = R::constant(accuracy::RATIO);
-        let tolerance = Tolerance { relative: ten * relative, absolute: ten * absolute };
-        Estimated { fine: self.clone(), coarse: self.with_tolerance(tolerance), largest: R::constant(0.0) }
+        let coarser = |ratio: f64| {
+            let ratio = R::constant(ratio);
+            let tolerance = Tolerance { relative: ratio * relative, absolute: ratio * absolute };
+            self.clone().with_tolerance(tolerance)
+        };
+        let coarser = Some([coarser(accuracy::RATIO * accuracy::RATIO), coarser(accuracy::RATIO)]);
+        Estimated { coarser, fine: self, differences: [R::constant(0.0); 2], evaluations: 0 }
     }
 
     /// With a wanted error in place of a tolerance of steps. It is at most `accuracy` at the end of each
@@ -113,30 +175,33 @@ where
     }
 }
 
-/// Instants of a run at which it is compared: at one alone runs may agree by chance.
+/// Instants of a run to a wanted error at which it is compared: at one alone runs may agree by chance.
 const INSTANTS: usize = 4;
 
+/// The same of an estimate, which one run alone must not make small by chance.
+const INSTANTS_OF_ESTIMATE: usize = 16;
+
 /// Coordinates of a run at instants of equal distance, the end included.
-type Course<R, const N: usize> = [[R; N]; INSTANTS];
+type Course<R, const N: usize, const K: usize> = [[R; N]; K];
 
 /// A run with its course.
 type Followed<S, I, F, R, const N: usize, const M: usize> =
-    (Simulation<S, Explicit<I, F>, R, N, M>, Course<R, N>);
+    (Simulation<S, Explicit<I, F>, R, N, M>, Course<R, N, INSTANTS>);
 
 /// Moves `run` on to `until` (s); its coordinates on the way.
-fn followed<S, I, F, R, const N: usize, const M: usize>(
+fn followed<S, I, F, R, const N: usize, const M: usize, const K: usize>(
     run: &mut Simulation<S, Explicit<I, F>, R, N, M>,
     until: R,
-) -> Result<Course<R, N>, Failure>
+) -> Result<Course<R, N, K>, Failure>
 where
     S: Dynamic<R, N, M>,
     I: Embedded,
     F: Formulation<S, R, N, M>,
     R: Real,
 {
-    let mut course = [run.now.y.q; INSTANTS];
+    let mut course = [run.now.y.q; K];
     let mut places = course.iter_mut();
-    run.sample(until, INSTANTS as u32, |instant| {
+    run.sample(until, K as u32, |instant| {
         if let Some(place) = places.next() {
             *place = instant.y.q;
         }
@@ -145,7 +210,11 @@ where
 }
 
 /// Largest difference of two courses in the reference metric with these scales of the coordinates (N).
-fn difference<R: Real, const N: usize>(a: &Course<R, N>, b: &Course<R, N>, scales: &[R; N]) -> R {
+fn difference<R: Real, const N: usize, const K: usize>(
+    a: &Course<R, N, K>,
+    b: &Course<R, N, K>,
+    scales: &[R; N],
+) -> R {
     let pairs = a.iter().flatten().zip(b.iter().flatten()).zip(scales.iter().cycle());
     pairs.fold(R::constant(0.0), |largest, ((a, b), scale)| {
         let distance = ((*a - *b) / *scale).abs();
@@ -163,8 +232,7 @@ where
     S: Dynamic<R, N, M>,
     R: Real,
 {
-    let steps = |run: &Simulation<S, X, R, N, M>| f64::from(run.adaptive.accepted);
-    steps(fine) >= accuracy::FINER * steps(coarse)
+    is_more(coarse.adaptive.accepted, fine.adaptive.accepted)
 }
 
 impl<S, I, F, R, const N: usize, const M: usize> Estimated<S, Explicit<I, F>, R, N, M>
@@ -174,39 +242,61 @@ where
     F: Formulation<S, R, N, M> + Clone,
     R: Real,
 {
-    /// Moves both runs on to `until` (s).
+    /// Moves all runs on to `until` (s). A coarser run that fails ends the estimate, not the run.
     ///
     /// # Errors
-    /// Those of [`Simulation::advance_to`] for either run; nothing has changed then.
+    /// Those of [`Simulation::advance_to`] for the run itself; nothing has changed then.
     pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
         let mut next = self.clone();
-        let fine = followed(&mut next.fine, until)?;
-        let coarse = followed(&mut next.coarse, until)?;
-        next.largest = next.largest.max(difference(&fine, &coarse, &next.fine.metric.coordinates));
+        let fine: Course<R, N, INSTANTS_OF_ESTIMATE> = followed(&mut next.fine, until)?;
+        next.coarser = next.coarser.and_then(|[mut coarsest, mut coarse]| {
+            let before = coarsest.counts.evaluations + coarse.counts.evaluations;
+            let courses = followed(&mut coarsest, until).and_then(|a| Ok([a, followed(&mut coarse, until)?]));
+            next.evaluations += coarsest.counts.evaluations + coarse.counts.evaluations - before;
+            let [a, b] = courses.ok()?;
+            let scales = &next.fine.metric.coordinates;
+            let found = [difference(&a, &b, scales), difference(&b, &fine, scales)];
+            let [looser, tighter] = next.differences;
+            // Written so that NaN stays.
+            let stays = |so_far: R, new: R| new <= so_far || !so_far.is_finite();
+            let largest = |so_far: R, new: R| if stays(so_far, new) { so_far } else { new };
+            next.differences = [largest(looser, found[0]), largest(tighter, found[1])];
+            Some([coarsest, coarse])
+        });
         *self = next;
         Ok(())
     }
 
-    /// Largest error of the coordinates so far in the reference metric (rad, reference lengths): that of the coarser run, at four
-    /// instants of each [`advance_to`](Self::advance_to). Of runs with nearly the same steps it is the sum of the errors that the steps
-    /// estimate.
-    pub fn error_estimate(&self) -> R {
+    /// Largest error of the coordinates so far in the reference metric (rad, reference lengths), at 16 instants of each
+    /// [`advance_to`](Self::advance_to); see [`ErrorEstimate::of`].
+    ///
+    /// Without differences to tell it, an untrusted sum of the errors that the steps estimate.
+    pub fn error_estimate(&self) -> ErrorEstimate<R> {
         let Tolerance { relative, absolute } = self.fine.tolerance;
         let local = self.fine.errors * (relative + absolute);
-        if is_finer(&self.fine, &self.coarse) { self.largest } else { self.largest.max(local) }
+        match &self.coarser {
+            None => ErrorEstimate::Untrusted(local),
+            Some([coarsest, coarse]) => {
+                let steps = [coarsest, coarse, &self.fine].map(|run| run.adaptive.accepted);
+                match ErrorEstimate::of(self.differences, steps) {
+                    ErrorEstimate::Untrusted(value) => ErrorEstimate::Untrusted(value.max(local)),
+                    trusted => trusted,
+                }
+            }
+        }
     }
 
     /// Right-hand sides that the estimate costs.
     pub fn evaluations_of_estimate(&self) -> u64 {
-        self.coarse.counts.evaluations
+        self.evaluations
     }
 
-    /// The finer run, to read.
+    /// The run, to read.
     pub fn run(&self) -> &Simulation<S, Explicit<I, F>, R, N, M> {
         &self.fine
     }
 
-    /// The finer run, to go on without an estimate.
+    /// The run, to go on without an estimate.
     pub fn into_run(self) -> Simulation<S, Explicit<I, F>, R, N, M> {
         self.fine
     }
@@ -259,10 +349,7 @@ where
             let tells = is_finer(&fine.0, &middle.0) && is_finer(&middle.0, &coarse.0);
             let falls = tells && second * R::constant(accuracy::FALL) <= first;
             if falls {
-                // What is left of a geometric series; a fall that is faster may be chance.
-                let fall =
-                    (first / second.max(R::constant(f64::MIN_POSITIVE))).min(R::constant(accuracy::TRUSTED));
-                let left = second / (fall - R::constant(1.0));
+                let left = left_of(first, second);
                 best = Some(best.map_or(left, |best| best.min(left)));
                 if left <= wanted {
                     *self = Accurate { run: fine.0, estimate: Some(left), evaluations, ..*self };

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::erased::dynamics::AnyDynamics;
 use crate::erased::dynamics::direct_dynamics::{Approach, Simulated, Stabilization, Steps, equal};
-use mbs_runtime::dynamics::{Counts, MethodWarning, MovedStart};
+use mbs_runtime::dynamics::{Counts, ErrorEstimate, MethodWarning, MovedStart};
 use mbs_runtime::{Failure, FailureKind};
 
 use super::super::summary::{significant, unit};
@@ -41,8 +41,11 @@ pub(super) fn direct(
     Ok(AnalysisResult { ended: end, ..AnalysisResult::of(found.motion, figures) })
 }
 
-/// Errors of the coordinates at the end of adaptive steps: their difference from a run of ten times the tolerance, in each unit the
-/// largest. None where both runs have nearly the same steps.
+/// Instants of a motion at which its estimated errors are taken, the end included.
+const INSTANTS: usize = 4;
+
+/// Errors of the coordinates of adaptive steps at some instants, in each unit the largest: differences from a run of ten times the
+/// tolerance. A run of a hundred times the tolerance tells if they are trusted.
 fn estimated_error(
     dynamics: &dyn AnyDynamics,
     approach: &Approach,
@@ -50,23 +53,40 @@ fn estimated_error(
     found: &Simulated,
 ) -> Option<[String; 2]> {
     let Steps::Adaptive { pair, tolerance } = approach.steps else { return None };
-    let (first, last) = (*times.first()?, *times.last()?);
-    let steps = Steps::Adaptive { pair, tolerance: 10.0 * tolerance };
-    let coarse = dynamics.simulate(&Approach { steps, ..*approach }, &[first, last], &mut |_| ()).ok()?;
-    let is_whole = found.failure.is_none() && coarse.failure.is_none();
-    if !is_whole || 10 * found.counts.steps < 11 * coarse.counts.steps {
+    if found.failure.is_some() || times.len() < 2 {
         return None;
     }
-    let mut errors: Vec<(&str, f64)> = Vec::new();
-    for (fine, coarse) in found.motion.coordinates.iter().zip(&coarse.motion.coordinates) {
-        let error = (fine.q.last()? - coarse.q.last()?).abs();
+    // Runs show instants of equal distance.
+    let count = times.len() - 1;
+    let parts = if count.is_multiple_of(INSTANTS) { INSTANTS } else { 1 };
+    let instants: Vec<f64> = times.iter().step_by(count / parts).copied().collect();
+    let coarser = |ratio: f64| {
+        let steps = Steps::Adaptive { pair, tolerance: ratio * tolerance };
+        let run = dynamics.simulate(&Approach { steps, ..*approach }, &instants, &mut |_| ()).ok()?;
+        run.failure.is_none().then_some(run)
+    };
+    let name = "estimated error".to_string();
+    let (Some(coarsest), Some(coarse)) = (coarser(100.0), coarser(10.0)) else {
+        return Some([name, "not known: runs of coarser tolerances do not go through".to_string()]);
+    };
+    let steps = [&coarsest, &coarse, found].map(|run| u32::try_from(run.counts.steps).unwrap_or(u32::MAX));
+    let mut errors: Vec<(&str, [f64; 2])> = Vec::new();
+    let coordinates = found.motion.coordinates.iter().zip(&coarse.motion.coordinates);
+    for ((fine, coarse), coarsest) in coordinates.zip(&coarsest.motion.coordinates) {
+        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let fine_q: Vec<f64> = fine.q.iter().step_by(count / parts).copied().collect();
+        let own = [apart(&coarsest.q, &coarse.q), apart(&coarse.q, &fine_q)];
         match errors.iter_mut().find(|(of, _)| *of == fine.unit) {
-            Some((_, largest)) => *largest = largest.max(error),
-            None => errors.push((fine.unit, error)),
+            Some((_, largest)) => *largest = [largest[0].max(own[0]), largest[1].max(own[1])],
+            None => errors.push((fine.unit, own)),
         }
     }
-    let words: Vec<String> = errors.iter().map(|(of, error)| format!("{error:.0e}{}", unit(of))).collect();
-    Some(["estimated error at the end".to_string(), words.join(", ")])
+    let words = |(of, apart): &(&str, [f64; 2])| {
+        let estimate = ErrorEstimate::of(*apart, steps);
+        let doubt = if estimate.trusted().is_some() { "" } else { " (untrusted)" };
+        format!("{:.0e}{}{doubt}", estimate.value(), unit(of))
+    };
+    Some([name, errors.iter().map(words).collect::<Vec<_>>().join(", ")])
 }
 
 /// Reason why a motion from forces ended; at a singular position that its stabilisation cannot pass, also the cure.

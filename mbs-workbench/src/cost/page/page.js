@@ -105,7 +105,8 @@ const chart = (place, value, words) => {
       const filled = point.verdict === "right";
       const spot = svgElement("path", {
         d: mark(curve, x, y, 4.2), stroke: point.verdict === "wrong" ? "#d0021b" : colour,
-        fill: filled ? colour : "var(--panel)", "stroke-width": point.verdict === "wrong" ? 3 : 1.6, "data-curve": curve.name, class: "spot",
+        fill: filled ? colour : "var(--panel)", "stroke-width": point.verdict === "wrong" ? 3 : 1.6,
+        ...(point.verdict === "untrusted" ? { "stroke-dasharray": "2 1.5" } : {}), "data-curve": curve.name, class: "spot",
       }, svg);
       if (point.verdict === "hollow" && DATA.width) {
         const ends = [point.error + DATA.width, Math.max(point.error - DATA.width, 1e-17)].map((end) => atLog(Math.log10(end)));
@@ -141,9 +142,11 @@ const chart = (place, value, words) => {
 
 const figures = (point) => [
   ["error", short(point.error)], ["median", short(point.median)], ...(point.rate === null ? [] : [["velocity", short(point.rate)]]),
-  ...(point.second === null ? [] : [[DATA.second, short(point.second)]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
+  ...(point.second === null ? [] : [[DATA.second, short(point.second)]]),
+  ...(point.multiplier === null ? [] : [["multipliers", short(point.multiplier)]]),
+  ...(point.contact === undefined ? [] : [["times of contacts", point.contact]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
   ...(point.violation ? [["violation", short(point.violation)]] : []),
-  ...(point.expected !== undefined ? [["expected", short(point.expected)]] : []),
+  ...(point.expected !== undefined ? [["expected", short(point.expected) + (point.doubted ? ", untrusted" : "")]] : []),
   ...(point.perturbed !== undefined ? [["other parameters", short(point.perturbed)]] : []),
   ["time", `${short(point.time)} ${DATA.unit}`], ["evaluations", point.evaluations || "not told"],
   ...(point.steps ? [["steps", point.steps]] : []), ["verdict", point.verdict],
@@ -188,12 +191,18 @@ const table = () => {
   const place = byId("table");
   place.replaceChildren();
   const head = element("tr", undefined, place);
-  ["setting", "error", "median", "velocity", DATA.second, DATA.unit, "evaluations", "steps"].forEach((name) => element("th", name, head));
+  const rows = trusted.filter((entry) => entry.point.front).sort((a, b) => a.point.time - b.point.time);
+  const columns = [
+    ["error", (point) => short(point.error)], ["median", (point) => short(point.median)], ["velocity", (point) => short(point.rate)],
+    [DATA.second, (point) => short(point.second)], ["multipliers", (point) => short(point.multiplier)], ["contacts", (point) => point.contact ?? ""],
+    ["energy", (point) => (point.energy ? short(point.energy) : "")], ["violation", (point) => (point.violation ? short(point.violation) : "")],
+  ].filter(([, of]) => rows.some(({ point }) => of(point) !== ""));
+  ["setting", ...columns.map(([name]) => name), DATA.unit, "evaluations", "steps"].forEach((name) => element("th", name, head));
   const chosen = cheapest(asked);
-  for (const { curve, point } of trusted.filter((entry) => entry.point.front).sort((a, b) => a.point.time - b.point.time)) {
+  for (const { curve, point } of rows) {
     const row = element("tr", undefined, place);
     if (chosen && chosen.point === point) row.className = "chosen";
-    [`${curve.name}, ${point.label}`, short(point.error), short(point.median), short(point.rate), short(point.second), short(point.time), point.evaluations, point.steps]
+    [`${curve.name}, ${point.label}`, ...columns.map(([, of]) => of(point)), short(point.time), point.evaluations, point.steps]
       .forEach((text) => element("td", String(text), row));
   }
 };

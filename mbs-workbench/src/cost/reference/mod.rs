@@ -10,4 +10,4 @@ pub mod extrapolated;
 pub mod linear;
 pub mod motion;
 
-pub use motion::{Leg, Reference, Shot, reference};
+pub use motion::{Contact, Leg, Reference, Shot, reference};

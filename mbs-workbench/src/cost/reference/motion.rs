@@ -24,8 +24,23 @@ pub enum Leg {
 pub struct Shot {
     /// The state.
     pub at: Moving,
+    /// Accelerations: N.
+    pub qdd: Vec<D>,
+    /// Multipliers: M.
+    pub lambda: Vec<D>,
     /// Reactions, energy, outputs.
     pub observed: Observed<D>,
+}
+
+/// A contact that closes or opens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Time (s).
+    pub t: f64,
+    /// Its index among the contacts of the text.
+    pub index: usize,
+    /// `true` where it closes.
+    pub closes: bool,
 }
 
 /// A reference solution.
@@ -37,8 +52,8 @@ pub struct Reference {
     pub tolerance: f64,
     /// Steps taken.
     pub steps: u64,
-    /// Contacts that opened or closed.
-    pub events: u32,
+    /// Contacts that closed or opened, in the order of time.
+    pub contacts: Vec<Contact>,
     /// Reason why it ended early.
     pub stuck: Option<Stuck>,
 }
@@ -229,7 +244,7 @@ pub fn reference(
     let exact = |values: &[f64]| values.iter().map(|value| D::constant(*value)).collect::<Vec<D>>();
     let first = times.first().copied().unwrap_or(0.0);
     let span = times.last().copied().unwrap_or(0.0) - first;
-    let mut found = Reference { shots: Vec::new(), tolerance, steps: 0, events: 0, stuck: None };
+    let mut found = Reference { shots: Vec::new(), tolerance, steps: 0, contacts: Vec::new(), stuck: None };
     let Some(mut course) = Course::begin(equations, exact(start.0), exact(start.1), first) else {
         found.stuck = Some(Stuck::SmallSteps);
         return found;
@@ -259,7 +274,7 @@ pub fn reference(
             match course.advance(equations, method.as_mut(), step, &aim) {
                 Some((growth, event)) => {
                     found.steps += 1;
-                    found.events += u32::from(event);
+                    found.contacts.extend(event);
                     // A step that an instant cut short says nothing of the length that it could have had.
                     h = h.max(step.high) * if is_whole { growth.max(1.0) } else { growth };
                 }
@@ -292,18 +307,19 @@ impl Course {
 
     fn shot(&self, equations: &dyn ExactEquations) -> Shot {
         let observed = equations.observed(&self.at, &self.solved.qdd, &self.solved.lambda);
-        Shot { at: self.at.clone(), observed }
+        let Solved { qdd, lambda, .. } = self.solved.clone();
+        Shot { at: self.at.clone(), qdd, lambda, observed }
     }
 
-    /// One step, up to the first contact that opens or closes in it. Returns the factor for the next one, and `true` at such a
-    /// contact; none where the step is to be tried again shorter.
+    /// One step, up to the first contact that opens or closes in it. Returns the factor for the next one, and that contact; none where
+    /// the step is to be tried again shorter.
     fn advance(
         &mut self,
         equations: &mut dyn ExactEquations,
         method: &mut dyn StepMethod,
         h: D,
         aim: &Aim,
-    ) -> Option<(f64, bool)> {
+    ) -> Option<(f64, Option<Contact>)> {
         let tried = self.tried(equations, method, h, aim)?;
         let before = signs(equations, &self.at);
         let after = equations.gaps(&tried.end);
@@ -311,7 +327,7 @@ impl Course {
         let Some(crossed) = crossed else {
             method.accept();
             self.take(equations, tried.end)?;
-            return Some((tried.growth, false));
+            return Some((tried.growth, None));
         };
         // The contact by regula falsi over steps from the same start, with Illinois's weights.
         let gap = |at: &Moving| equations.gaps(at)[crossed][0];
@@ -341,7 +357,7 @@ impl Course {
         }
         method.restart();
         self.take(equations, end)?;
-        Some((0.25, true))
+        Some((0.25, Some(Contact { t: self.at.t.high, index: crossed, closes: before[crossed] > 0.0 })))
     }
 
     /// A step with its end on the rows, if its error is small enough.

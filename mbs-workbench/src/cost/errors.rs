@@ -1,0 +1,223 @@
+//! Errors of a run against a reference solution: coordinates, velocities, multipliers, energy, times of contacts.
+
+use crate::cost::points::Errors;
+use crate::cost::reference::linear::worse;
+use crate::cost::reference::{Contact, Reference, Shot};
+use crate::double_double::DoubleDouble as D;
+use crate::erased::timed_runs::Seen;
+
+/// Largest values of a motion, by which errors are measured.
+#[derive(Clone, Debug)]
+pub struct Sizes {
+    /// Reference metric of the coordinates: N.
+    pub scales: Vec<f64>,
+    /// Reference metric of the rows: M.
+    rows: Vec<f64>,
+    /// Largest velocity.
+    pub rate: f64,
+    multiplier: f64,
+    reaction: f64,
+    energy: f64,
+    /// Largest magnitude of each output.
+    pub outputs: Vec<f64>,
+    /// Multipliers that are unique, at each instant of the reference: M.
+    unique: Vec<Vec<bool>>,
+}
+
+/// Largest magnitude; 1 where all are 0.
+fn size(values: impl Iterator<Item = f64>) -> f64 {
+    let largest = values.map(f64::abs).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+impl Sizes {
+    /// Those of `reference`, in the metric `scales` of coordinates (N) and `rows` (M). `unique` tells for time (s) and coordinates (N)
+    /// which multipliers are unique there.
+    pub fn of(
+        reference: &Reference,
+        [scales, rows]: [Vec<f64>; 2],
+        unique: &dyn Fn(f64, &[f64]) -> Vec<bool>,
+    ) -> Self {
+        let shots = || reference.shots.iter();
+        let rates =
+            shots().flat_map(|shot| shot.at.qd.iter().zip(&scales).map(|(qd, scale)| qd.high / scale));
+        let reactions = shots()
+            .flat_map(|shot| shot.observed.reaction.iter().zip(&scales).map(|(r, scale)| r.high * scale));
+        let energy = size(shots().map(|shot| shot.observed.kinetic.high));
+        let count = reference.shots.first().map_or(0, |shot| shot.observed.outputs.len());
+        let outputs = (0..count).map(|k| size(shots().map(move |shot| shot.observed.outputs[k].high)));
+        let at = |shot: &Shot| {
+            let q: Vec<f64> = shot.at.q.iter().map(|value| value.high).collect();
+            unique(shot.at.t.high, &q)
+        };
+        let unique: Vec<Vec<bool>> = shots().map(at).collect();
+        let multipliers = shots().zip(&unique).flat_map(|(shot, unique)| {
+            let entries = shot.lambda.iter().zip(&rows).zip(unique).filter(|(_, unique)| **unique);
+            entries.map(|((value, scale), _)| value.high * scale)
+        });
+        let (rate, reaction, multiplier) = (size(rates), size(reactions), size(multipliers));
+        let outputs = outputs.collect();
+        Sizes { rate, reaction, energy, multiplier, outputs, unique, scales, rows }
+    }
+}
+
+/// Difference of a value and the reference, in `f64`.
+pub fn apart(value: f64, reference: D) -> f64 {
+    ((value - reference.high) - reference.low).abs()
+}
+
+/// Error of the judged quantity at one instant.
+fn judged(seen: &Seen, shot: &Shot, sizes: &Sizes, watched: &[usize]) -> f64 {
+    if watched.is_empty() {
+        let pairs = seen.q.iter().zip(&shot.at.q).zip(&sizes.scales);
+        return pairs.map(|((q, exact), scale)| apart(*q, *exact) / scale).fold(0.0, worse);
+    }
+    let of = |k: &usize| apart(seen.observed.outputs[*k], shot.observed.outputs[*k]) / sizes.outputs[*k];
+    watched.iter().map(of).fold(0.0, worse)
+}
+
+/// Error of the velocities of a run that is `late` (s) by what it makes of the last contact, in the reference metric.
+fn of_rates(seen: &Seen, shot: &Shot, sizes: &Sizes, late: f64) -> f64 {
+    let rates = seen.qd.iter().zip(&shot.at.qd).zip(&shot.qdd).zip(&sizes.scales);
+    let of =
+        |(((qd, exact), qdd), scale): (((&f64, &D), &D), &f64)| apart(qd + late * qdd.high, *exact) / scale;
+    rates.map(of).fold(0.0, worse) / sizes.rate
+}
+
+/// Error of the multipliers that are unique at the `index`th instant, over the largest; NaN where none is.
+fn of_multipliers(seen: &Seen, shot: &Shot, sizes: &Sizes, index: usize) -> f64 {
+    let unique = sizes.unique.get(index).map_or(&[][..], Vec::as_slice);
+    let entries = seen.lambda.iter().zip(&shot.lambda).zip(&sizes.rows).zip(unique);
+    let errors = entries
+        .filter(|(_, unique)| **unique)
+        .map(|(((value, exact), scale), _)| apart(*value, *exact) * scale / sizes.multiplier);
+    errors.reduce(worse).unwrap_or(f64::NAN)
+}
+
+/// Times (s) of a contact in a run and in the reference.
+#[derive(Clone, Copy, Debug)]
+struct Matched {
+    of_run: f64,
+    exact: f64,
+    closes: bool,
+}
+
+/// The `k`th change of each contact in a run and in the reference; none where a run has more changes or fewer.
+fn matched(found: &[Vec<f64>], reference: &[Contact]) -> Option<Vec<Matched>> {
+    let mut pairs = Vec::new();
+    for (index, times) in found.iter().enumerate() {
+        let own: Vec<&Contact> = reference.iter().filter(|contact| contact.index == index).collect();
+        if own.len() != times.len() {
+            return None;
+        }
+        let of = |(exact, time): (&&Contact, &f64)| Matched {
+            of_run: *time,
+            exact: exact.t,
+            closes: exact.closes,
+        };
+        pairs.extend(own.iter().zip(times).map(of));
+    }
+    pairs.sort_by(|a, b| a.exact.total_cmp(&b.exact));
+    Some(pairs)
+}
+
+/// Widths of the time between a contact in a run and in the reference, up to which an instant is at the contact.
+const NEAR: f64 = 10.0;
+
+/// Time (s) by which a run is late at `t` (s), if that is during a contact or next to its ends.
+fn late(pairs: &[Matched], t: f64) -> Option<f64> {
+    let last = pairs.iter().rposition(|pair| pair.exact <= t);
+    let is_near = |pair: &Matched| (t - pair.exact).abs() <= NEAR * (pair.of_run - pair.exact).abs();
+    let near = last.into_iter().chain(last.map_or(Some(0), |last| Some(last + 1)));
+    let chosen = near
+        .filter_map(|index| pairs.get(index))
+        .find(|pair| pair.closes && pair.exact <= t || is_near(pair));
+    chosen.map(|pair| pair.of_run - pair.exact)
+}
+
+/// Errors of `run`, whose contacts change at the times `contacts` (s, one list a contact), against `reference`.
+pub fn errors(
+    run: &[Seen],
+    contacts: &[Vec<f64>],
+    reference: &Reference,
+    sizes: &Sizes,
+    watched: &[usize],
+) -> Option<Errors> {
+    let parts = reference.shots.len().checked_sub(1)?;
+    let stride = (parts / run.len().checked_sub(1)?.max(1)).max(1);
+    let mut all = Vec::new();
+    let mut errors = Errors { multiplier: f64::NAN, contact: f64::NAN, ..Errors::default() };
+    let pairs = matched(contacts, &reference.contacts);
+    if !contacts.is_empty() && !reference.contacts.is_empty() || pairs.is_none() {
+        let of =
+            |pairs: &Vec<Matched>| pairs.iter().map(|pair| (pair.of_run - pair.exact).abs()).fold(0.0, worse);
+        errors.contact = pairs.as_ref().map_or(f64::INFINITY, of);
+    }
+    let pairs = pairs.unwrap_or_default();
+    for (index, (seen, shot)) in run.iter().zip(reference.shots.iter().step_by(stride)).enumerate() {
+        all.push(judged(seen, shot, sizes, watched));
+        let plain = of_rates(seen, shot, sizes, 0.0);
+        let shifted = late(&pairs, shot.at.t.high).map_or(plain, |late| of_rates(seen, shot, sizes, late));
+        // NaN stays.
+        let rate = if shifted < plain { shifted } else { plain };
+        let reaction = seen.observed.reaction.iter().zip(&shot.observed.reaction).zip(&sizes.scales);
+        let reaction = reaction.map(|((r, exact), scale)| apart(*r, *exact) * scale / sizes.reaction);
+        errors.rate = worse(errors.rate, rate);
+        errors.second = worse(errors.second, reaction.fold(0.0, worse));
+        let multiplier = of_multipliers(seen, shot, sizes, index * stride);
+        if !multiplier.is_nan() {
+            errors.multiplier = errors.multiplier.max(multiplier);
+        }
+        let energy = apart(seen.observed.energy, shot.observed.energy) / sizes.energy;
+        errors.energy = worse(errors.energy, energy);
+        errors.violation = worse(errors.violation, seen.violation);
+    }
+    errors.judged = all.iter().copied().fold(0.0, worse);
+    all.sort_by(f64::total_cmp);
+    errors.median = all.get(all.len() / 2).copied().unwrap_or(0.0);
+    Some(errors)
+}
+
+/// Largest difference of two runs in the judged quantity, at the instants that both have.
+pub fn between(a: &[Seen], b: &[Seen], sizes: &Sizes, watched: &[usize]) -> Option<f64> {
+    let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
+    let stride = many.len().checked_sub(1)? / few.len().checked_sub(1)?.max(1);
+    let difference = |(a, b): (&Seen, &Seen)| {
+        if watched.is_empty() {
+            let pairs = a.q.iter().zip(&b.q).zip(&sizes.scales);
+            return pairs.map(|((a, b), scale)| (a - b).abs() / scale).fold(0.0, worse);
+        }
+        let of = |k: &usize| (a.observed.outputs[*k] - b.observed.outputs[*k]).abs() / sizes.outputs[*k];
+        watched.iter().map(of).fold(0.0, worse)
+    };
+    Some(few.iter().zip(many.iter().step_by(stride.max(1))).map(difference).fold(0.0, worse))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contact(t: f64, index: usize, closes: bool) -> Contact {
+        Contact { t, index, closes }
+    }
+
+    #[test]
+    fn contacts_are_matched_one_by_one_and_a_missed_one_is_known() {
+        let reference = [contact(0.1, 0, true), contact(0.2, 0, false), contact(0.15, 1, true)];
+        let pairs = matched(&[vec![0.1001, 0.2002], vec![0.15]], &reference).expect("as many");
+        assert_eq!(pairs.iter().map(|pair| pair.exact).collect::<Vec<_>>(), [0.1, 0.15, 0.2]);
+        assert!(matched(&[vec![0.1], vec![0.15]], &reference).is_none());
+    }
+
+    #[test]
+    fn a_run_is_late_during_a_contact_and_next_to_its_ends_alone() {
+        let reference = [contact(0.1, 0, true), contact(0.2, 0, false)];
+        let pairs = matched(&[vec![0.101, 0.203]], &reference).expect("as many");
+        let near = |t| late(&pairs, t).map(|late| (late * 1e6).round());
+        assert_eq!(near(0.05), None);
+        assert_eq!(near(0.095), Some(1e3));
+        assert_eq!(near(0.15), Some(1e3));
+        assert_eq!(near(0.21), Some(3e3));
+        assert_eq!(near(0.4), None);
+    }
+}
