@@ -150,7 +150,7 @@ fn estimates<S, I, const N: usize, const M: usize>(
                 ErrorEstimate::Trusted(_) => found.trusted.push((ratio, *tolerance)),
                 ErrorEstimate::Untrusted(_) => {
                     found.untrusted += 1;
-                    found.outside += usize::from(!(BOUNDS[0] <= ratio && ratio <= BOUNDS[1]));
+                    found.outside += usize::from(!(BOUNDS[0]..=BOUNDS[1]).contains(&ratio));
                 }
             }
         }
