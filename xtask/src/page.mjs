@@ -151,6 +151,10 @@ async function end(page) {
 }
 
 async function swing(page) {
+    // Runs of one rest are one choice, and have facts of their own.
+    const [heads, labels] = await page.evaluate(() => [[...document.querySelectorAll('#facts thead th')].slice(1).map(cell => cell.textContent),
+        JSON.parse(document.querySelector('#data').textContent).runs.map(run => run.label)]);
+    if (heads.length) assert.deepEqual(heads, labels, 'a column of facts a run');
     const modes = await page.$$('.mode svg');
     const lines = await page.$$eval('#small tbody tr', rows => rows.length);
     assert.ok(modes.length > 0 && modes.length === lines, 'every mode has a line and a picture');

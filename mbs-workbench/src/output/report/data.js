@@ -10,6 +10,7 @@ const given = moving(data.runs);
 /** Values of a parameter with the runs of each, where the page has a slider; the page opens with the text's or the command's. */
 const stops = data.slider ? [{ value: data.slider.value, runs: given }, ...data.slider.stops.map(stop => ({ ...stop, runs: moving(stop.runs) }))].sort((a, b) => a.value - b.value)
   : [{ runs: given }];
+const labels = given.map(run => run.label); // as facts name them
 clean(stops.flatMap(stop => stop.runs));
 for (const stop of stops) stop.runs = merged(stop.runs);
 /** The stop whose runs are on show. */

@@ -86,7 +86,7 @@ const MOST_COLUMNS = 4; // runs whose facts stand side by side
 
 /** Facts, those of several runs in one line with a column a run. */
 function createFacts() {
-  const table = byId("facts"), labels = given.map(run => run.label), side = labels.length > 1 && labels.length <= MOST_COLUMNS, lines = new Map();
+  const table = byId("facts"), side = labels.length > 1 && labels.length <= MOST_COLUMNS, lines = new Map();
   for (const [name, value] of data.facts || []) {
     const label = side && labels.find(label => name.endsWith(`, ${label}`) && !labels.some(longer => longer !== label && longer.endsWith(`, ${label}`) && name.endsWith(`, ${longer}`)));
     const key = label ? name.slice(0, -label.length - 2) : name;
