@@ -18,10 +18,11 @@ pub fn explain(
     diagnostics: &mut Diagnostics,
     faults: impl Fn(TokenStream) -> Diagnostics,
 ) {
-    for wanted in 0..MOST {
+    // Someone who writes decimal commas writes them throughout.
+    for wanted in (0..MOST).map(Some).chain([None]) {
         let mut reading = Reading { wanted, seen: 0, slip: None };
         let changed = reading.read(input.clone(), false, DEEPEST);
-        let Some(Diagnostic { message, help, span }) = reading.slip else { return };
+        let Some(Diagnostic { message, help, span }) = reading.slip else { continue };
         let mut left = faults(changed);
         if left.number() < diagnostics.number() {
             left.report(span, message, help);
@@ -31,9 +32,9 @@ pub fn explain(
     }
 }
 
-/// A text in which the sign number `wanted` is read in another way.
+/// A text in which the sign number `wanted` is read in another way; without a number all commas that may be decimal.
 struct Reading {
-    wanted: usize,
+    wanted: Option<usize>,
     seen: usize,
     /// The fault that the sign is then.
     slip: Option<Diagnostic>,
@@ -55,8 +56,8 @@ impl Reading {
             };
             if let Some((slip, tokens, is_number)) = slip {
                 self.seen += 1;
-                if self.seen == self.wanted + 1 {
-                    self.slip = Some(slip);
+                if self.wanted.map_or(is_number, |wanted| self.seen == wanted + 1) {
+                    self.slip.get_or_insert(slip);
                     if is_number {
                         changed.pop();
                         next += 1;
