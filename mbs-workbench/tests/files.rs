@@ -288,6 +288,26 @@ fn a_slider_has_the_ends_of_the_text_and_motions_at_its_stops() {
 }
 
 #[test]
+fn a_command_line_without_sense_has_a_document_too() {
+    for (arguments, part) in [
+        (&["run", "wiper", "--stepz", "9"][..], "--stepz"),
+        (&["basins", "wiper", "--out", "picture"], "FILE.svg"),
+        (&["Wiper"], "mbs run wiper"),
+    ] {
+        let output = wiper(&[arguments, &["--json"]].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a document");
+        assert_eq!((&document["schema"], &document["error"]["exit_code"]), (&"mbs/usage/1".into(), &2.into()));
+        let message = document["error"]["message"].as_str().expect("a message");
+        assert!(message.contains(part) && !message.starts_with("error"), "{message}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains(part));
+    }
+    // Help is no error.
+    let help = wiper(&["run", "--help", "--json"]);
+    assert!(help.status.success() && !help.stdout.starts_with(b"{"));
+}
+
+#[test]
 fn files_are_laid_out_or_left_with_their_faults() {
     let folder = scratch("laid-out");
     fs::create_dir_all(&folder).expect("a folder");
