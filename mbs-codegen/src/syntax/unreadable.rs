@@ -182,8 +182,10 @@ fn scan(source: &str, is_call: bool) -> Option<Unreadable> {
             (false, true) => character,
             _ => ' ',
         };
-        if is_word(character) || (character == '.' && first.is_ascii_digit()) {
-            if !(is_word(previous) || previous == '.') {
+        let is_number = word.starts_with(|c: char| c.is_ascii_digit());
+        let is_point = character == '.' && previous.is_ascii_digit() && is_number;
+        if is_word(character) || is_point {
+            if !(is_word(previous) || previous == '.' && word.ends_with('.')) {
                 word.clear();
             }
             word.push(character);
