@@ -36,6 +36,7 @@ mod program;
 )]
 pub mod random;
 mod sample_points;
+mod second_reading;
 mod structure;
 mod symbolic;
 mod syntax;
@@ -75,6 +76,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
     };
     let scenes = Scenes::resolve(&text, &mut diagnostics);
     translate(&text, &scenes, &mut diagnostics, Lengths::USUAL).unwrap_or_else(|| {
+        second_reading::explain(&input, &mut diagnostics, faults);
         // The compiler tells them in this order.
         let (others, first) = diagnostics.to_tokens();
         let mut items = emit::rust::stub(&text, &scenes, &first);
@@ -119,6 +121,23 @@ fn translate(
     Some(emit::rust::rust(text, scenes, &translated, left_out.as_ref(), lengths))
 }
 
+/// Faults of a text.
+fn faults(input: TokenStream) -> Diagnostics {
+    let mut diagnostics = Diagnostics::default();
+    if let Some(text) = syntax::read(input, &mut diagnostics) {
+        let scenes = Scenes::resolve(&text, &mut diagnostics);
+        let _translated = translate(&text, &scenes, &mut diagnostics, Lengths::USUAL);
+    }
+    diagnostics
+}
+
+/// Before: a text that is kept as a string, with faults. After: those of [`second_reading::explain`].
+fn explain(source: &str, diagnostics: &mut Diagnostics) {
+    if let Some(input) = model::scenes::tokens_of(source, &mut Diagnostics::default()) {
+        second_reading::explain(&input, diagnostics, faults);
+    }
+}
+
 /// A scene through all stages, or its faults.
 fn translate_scene(scene: &Scene) -> Result<emit::rust::Translated<'_>, Diagnostics> {
     if !scene.faults.is_empty() {
@@ -161,7 +180,10 @@ fn expand_cut(source: &str, lengths: Lengths) -> Result<TokenStream, String> {
     let mut diagnostics = Diagnostics::default();
     let items = model::scenes::read_source(source, &mut diagnostics)
         .and_then(|(text, scenes)| translate(&text, &scenes, &mut diagnostics, lengths));
-    items.ok_or_else(|| diagnostics.to_text())
+    items.ok_or_else(|| {
+        explain(source, &mut diagnostics);
+        diagnostics.to_text()
+    })
 }
 
 /// Names of a text that is kept as a string, once it is checked and expanded.
@@ -172,8 +194,10 @@ pub fn outline(source: &str) -> Result<Outline, Vec<Fault>> {
     let mut diagnostics = Diagnostics::default();
     let read = model::scenes::read_source(source, &mut diagnostics)
         .filter(|(text, scenes)| translate(text, scenes, &mut diagnostics, Lengths::USUAL).is_some());
-    read.map(|(text, scenes)| outline::names(&text, &scenes))
-        .ok_or_else(|| diagnostics.sorted().into_iter().map(Fault::from).collect())
+    read.map(|(text, scenes)| outline::names(&text, &scenes)).ok_or_else(|| {
+        explain(source, &mut diagnostics);
+        diagnostics.sorted().into_iter().map(Fault::from).collect()
+    })
 }
 
 /// Faults of the form of a text that is kept as a string: what keeps its statements from being read.
@@ -198,6 +222,7 @@ pub fn warnings(source: &str) -> Result<Vec<Fault>, Vec<Fault>> {
         return Err(of(&diagnostics));
     };
     if translate(&text, &scenes, &mut diagnostics, Lengths::USUAL).is_none() {
+        explain(source, &mut diagnostics);
         return Err(of(&diagnostics));
     }
     let structures: Vec<_> = scenes

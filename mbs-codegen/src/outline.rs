@@ -13,6 +13,7 @@ use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
 use crate::model::{Model, VariableKind};
 use crate::syntax::Text;
+use crate::syntax::unreadable::{Unreadable, span_at, unreadable_call};
 
 /// Names that a text without faults declares.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -61,11 +62,16 @@ pub struct Call {
 /// The place where the source is no Rust.
 pub fn calls(rust: &str) -> Result<Vec<Call>, Fault> {
     let tokens: TokenStream = rust.parse().map_err(|error: proc_macro2::LexError| {
-        Fault::from(Diagnostic {
+        let known = unreadable_call(rust).map(|Unreadable { line, column, message, help }| Diagnostic {
+            message,
+            help,
+            span: span_at(line, column),
+        });
+        Fault::from(known.unwrap_or_else(|| Diagnostic {
             message: format!("this is no Rust: {error}"),
             help: "close every bracket and quote".into(),
             span: error.span(),
-        })
+        }))
     })?;
     let mut found = Vec::new();
     let mut streams = vec![tokens.into_iter()];

@@ -10,7 +10,7 @@ mechanism! {
     pub mechanism Wiper;
     param crank: m = 40mm;
     param rod: m = 250mm;
-    param rocker: m = 80mm;
+    param rocker: m = 80mm in 20mm..120mm, tolerance 0.1mm;
     param base: m = 240mm;
     param speed: rad/s = 45rpm;
     coord theta: rad = 0;
@@ -65,6 +65,25 @@ mechanism! {
     title "Measured rocker";
 }
 
+mechanism! {
+    /// A block on a rail that a measured force pushes, with an arm on a measured angle.
+    pub mechanism Pushed;
+    param mass: kg = 2;
+    param inertia: kg*m^2 = 0.3;
+    input thrust: N;
+    input theta: rad, rates;
+    coord x: m = 0;
+    coord phi: rad = 0;
+    body block { mass: mass, com: [x, 0] }
+    body arm { mass: 1, com: [0, 0], inertia: inertia, angle: phi }
+    force push: [thrust, 0] on [x, 0];
+    start x = 0 rate 0;
+    effect turned { drive encoder: phi == theta; out torque: N*m = effort(encoder); }
+    effect guided { param pace: m/s = 1; drive rail: x == pace*t; out rail_force: N = effort(rail); }
+    scene Free = turned;
+    scene Guided = turned + guided;
+}
+
 /// A lift of ten millimetres in one turn.
 #[derive(Clone, Copy, Debug)]
 struct Lift;
@@ -88,5 +107,11 @@ fn cam() -> Follower<Lift> {
 }
 
 fn main() -> ExitCode {
-    mbs_workbench::program(&[card!(Wiper::default()), card!(cam()), card!(Probe::default())])
+    mbs_workbench::program(&[
+        card!(Wiper::default()),
+        card!(cam()),
+        card!(Probe::default()),
+        card!(PushedFree::default()),
+        card!(PushedGuided::default()),
+    ])
 }

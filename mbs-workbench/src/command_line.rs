@@ -179,12 +179,28 @@ pub fn program(cards: &[Card]) -> ExitCode {
     let catalogue = Catalogue { cards };
     let Arguments { command, json } = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => match mechanism_as_command(&catalogue, &error) {
-            Some(hint) => return report(&CommandError::Usage(hint)),
-            None => error.exit(),
-        },
+        Err(error) => {
+            let hint = mechanism_as_command(&catalogue, &error);
+            put_usage(&error, hint.as_deref());
+            match hint {
+                Some(hint) => return report(&CommandError::Usage(hint)),
+                None => error.exit(),
+            }
+        }
     };
     on_large_stack(|| execute(&catalogue, command, json))
+}
+
+/// A document about a command line that makes no sense, where it asks for one.
+fn put_usage(error: &clap::Error, hint: Option<&str>) {
+    if !error.use_stderr() || std::env::args_os().all(|word| word != "--json") {
+        return;
+    }
+    let text = error.to_string();
+    let message = hint.unwrap_or_else(|| text.strip_prefix("error: ").unwrap_or(&text).trim_end());
+    let usage = CommandError::Usage(message.to_string());
+    // If it cannot be written, the message and the exit code say it.
+    let _ = Output::new(&mut io::stdout().lock(), Some("usage")).end(Some(&usage));
 }
 
 /// The study of `mbs cost` in a program that was built for one mechanism. `card` names it; `make` makes it in all numbers from

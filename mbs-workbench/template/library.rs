@@ -5,8 +5,8 @@ mbs_runtime::mechanism! {
     /// A crank moves a rocker by a coupler.
     pub mechanism __TYPE__;
 
-    // Dimensions: fields of the type, with their defaults.
-    param crank: m = 100mm;
+    // Dimensions: fields of the type, with their defaults. A range is what `--slide crank` moves through.
+    param crank: m = 100mm in 50mm..140mm, tolerance 0.1mm;
     param coupler: m = 250mm;
     param rocker: m = 200mm;
     param base: m = 300mm;

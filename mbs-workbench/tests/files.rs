@@ -69,6 +69,67 @@ fn an_input_follows_a_measured_table_with_its_rates() {
     }
 }
 
+/// Thrust 4 + 3 t − 2 t² of a measurement, which a cubic spline with parabolas at its ends meets.
+fn thrust(t: f64) -> f64 {
+    4.0 + t * (3.0 - 2.0 * t)
+}
+
+/// Columns of a run's CSV by name.
+fn columns<const K: usize>(folder: &std::path::Path, names: [&str; K]) -> Vec<[f64; K]> {
+    let csv = fs::read_to_string(folder.join("motion.csv")).expect("a table");
+    let mut lines = csv.lines().skip_while(|line| !line.starts_with("run,"));
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let at = names.map(|name| {
+        header.iter().position(|cell| *cell == name).unwrap_or_else(|| panic!("{name}: {header:?}"))
+    });
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        at.map(|index| cells[index].parse().expect("a number"))
+    };
+    lines.map(row).collect()
+}
+
+#[test]
+fn motions_from_forces_and_forces_of_motions_have_measured_inputs_at_every_instant() {
+    let folder = scratch("measured-forces");
+    fs::create_dir_all(&folder).expect("a folder");
+    let (angle, force) = (folder.join("theta.csv"), folder.join("thrust.csv"));
+    fs::write(&angle, measured(3)).expect("a table");
+    // Ten instants: far less than the steps of a method.
+    let line = |k: i32| format!("{},{}\n", 0.25 * f64::from(k), 1e-3 * thrust(0.25 * f64::from(k)));
+    fs::write(&force, format!("t (s),thrust (kN)\n{}", (0..=8).map(line).collect::<String>()))
+        .expect("a table");
+    let [theta, push] =
+        [("theta", &angle), ("thrust", &force)].map(|(name, path)| format!("{name}={}", path.display()));
+    let place = folder.to_str().expect("a path");
+    let given = ["--input", &theta, "--input", &push, "--steps", "60", "--out", place];
+    for (method, bound) in [("projection", 1e-9), ("velocity", 1e-9), ("radau", 1e-7)] {
+        text(&[&["simulate", "pushed_free:Free"][..], &given, &["--method", method]].concat());
+        let names = ["t (s)", "x (m)", "x_d (m/s)", "x_dd (m/s^2)", "phi (rad)"];
+        let rows = columns(&folder, names);
+        assert_eq!((rows.len(), rows[60][0]), (61, 2.0));
+        for [t, x, rate, acceleration, phi] in rows {
+            // Of a mass of 2 kg.
+            let exact = [
+                t * t * (1.0 + t * (0.25 - t / 12.0)),
+                t * (2.0 + t * (0.75 - t / 3.0)),
+                0.5 * thrust(t),
+                law(t)[0],
+            ];
+            for (found, exact) in [x, rate, acceleration, phi].into_iter().zip(exact) {
+                assert!((found - exact).abs() < bound, "{method}, t = {t}: {found} {exact}");
+            }
+        }
+    }
+    text(&[&["inverse", "pushed_guided:Guided"][..], &given].concat());
+    for [t, torque, rail] in columns(&folder, ["t (s)", "torque (N*m)", "rail_force (N)"]) {
+        assert!(
+            (torque - 0.3 * law(t)[2]).abs() < 1e-8 && (rail + thrust(t)).abs() < 1e-9,
+            "{t}: {torque} {rail}"
+        );
+    }
+}
+
 #[test]
 fn measured_points_are_drawn_and_compared() {
     let folder = scratch("overlaid");
@@ -153,7 +214,6 @@ fn faults_of_measured_tables_name_file_line_column_and_cure() {
     assert!(said.contains("tip.0"), "{said}");
     let given = format!("theta={}", table.display());
     assert!(failure(&["run", "probe", "--input", &given, "--input", &given], 2).contains("twice"));
-    assert!(failure(&["inverse", "probe", "--input", &given], 2).contains("mbs kinematics probe"));
 }
 
 #[test]
@@ -176,6 +236,75 @@ fn a_motion_that_an_input_locks_is_told_with_its_time() {
     assert!(said.contains(&format!("the motion ends at t = {low:.4} s: ")), "{low} {said}");
     assert!(said.contains(" | norm([x, arm*sin(phi)]) == reach;"), "{said}");
     assert!(folder.join("report.html").exists());
+}
+
+#[test]
+fn a_slider_has_the_ends_of_the_text_and_motions_at_its_stops() {
+    let folder = scratch("slider");
+    let place = folder.to_str().expect("a path");
+    text(&["run", "wiper", "--slide", "rocker=6", "--steps", "90", "--out", place]);
+    let data = data(&folder);
+    assert_eq!(data["command"], "mbs run wiper --steps 90 --slide rocker=6");
+    let slider = &data["slider"];
+    assert_eq!(slider["range"], serde_json::json!([0.02, 0.12]));
+    assert_eq!((slider["name"].as_str(), slider["value"].as_f64()), (Some("rocker"), Some(0.08)));
+    assert_eq!(slider["tolerance"], 1e-4);
+    let stops = slider["stops"].as_array().expect("stops");
+    let values: Vec<f64> = stops.iter().filter_map(|stop| stop["value"].as_f64()).collect();
+    assert_eq!(values, [0.02, 0.04, 0.06, 0.1, 0.12]);
+    for (value, stop) in values.iter().zip(stops) {
+        let motions = stop["runs"].as_array().expect("motions");
+        // The rod of 250 mm is longer than 200 mm from crank to base and the rocker together.
+        if *value < 0.05 {
+            let reason = stop["reason"].as_str().expect("a reason");
+            assert!(motions.is_empty() && reason.contains("closure"), "{value}: {reason}");
+            continue;
+        }
+        assert_eq!(motions.len(), data["runs"].as_array().expect("runs").len(), "{}", stop["reason"]);
+        for motion in motions {
+            let output = |name: &str| {
+                let of =
+                    motion["outputs"].as_array().expect("outputs").iter().find(|one| one["name"] == name);
+                of.expect(name)["value"][30].as_f64().expect("a number")
+            };
+            let length = (output("B.0") - 0.24).hypot(output("B.1"));
+            assert!((length - value).abs() < 1e-7, "{value}: {length}");
+        }
+    }
+    // The present value is no even stop.
+    text(&["run", "wiper", "--slide", "rocker=6", "--param", "rocker=70mm", "--steps", "9", "--out", place]);
+    let slider = &self::data(&folder)["slider"];
+    assert_eq!((slider["value"].as_f64(), slider["stops"].as_array().map(Vec::len)), (Some(0.07), Some(6)));
+    for (name, code, parts) in [
+        ("rod", 2, &["`rod` has no range", "param rod: m = … in LEAST..LARGEST;"][..]),
+        ("krank", 2, &["no parameter `krank`", "did you mean `crank`?"][..]),
+        ("crank=1", 2, &["number of stops from 2 to 41"][..]),
+    ] {
+        let said = failure(&["run", "wiper", "--slide", name, "--out", place], code);
+        assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+    }
+    let said = failure(&["run", "probe", "--slide", "theta", "--out", place], 2);
+    assert!(said.contains("`theta` is an input") && said.contains("--input theta="), "{said}");
+}
+
+#[test]
+fn a_command_line_without_sense_has_a_document_too() {
+    for (arguments, part) in [
+        (&["run", "wiper", "--stepz", "9"][..], "--stepz"),
+        (&["basins", "wiper", "--out", "picture"], "FILE.svg"),
+        (&["Wiper"], "mbs run wiper"),
+    ] {
+        let output = wiper(&[arguments, &["--json"]].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a document");
+        assert_eq!((&document["schema"], &document["error"]["exit_code"]), (&"mbs/usage/1".into(), &2.into()));
+        let message = document["error"]["message"].as_str().expect("a message");
+        assert!(message.contains(part) && !message.starts_with("error"), "{message}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains(part));
+    }
+    // Help is no error.
+    let help = wiper(&["run", "--help", "--json"]);
+    assert!(help.status.success() && !help.stdout.starts_with(b"{"));
 }
 
 #[test]

@@ -26,6 +26,9 @@ const ENDED: [&str; 4] = ["kinematics", "slider_crank", "--param", "r=0.2"];
 /// A study of what accuracy costs, short enough for a build without optimisation.
 const COST: [&str; 7] = ["cost", "pendulum", "--quick", "--until", "0.3", "--methods", "projection"];
 
+/// A parameter with a range that the page slides through.
+const SLIDING: [&str; 6] = ["run", "slider_crank_engine", "--slide", "r=4", "--until", "0.02"];
+
 /// Measured points that are drawn over a curve, one of them beyond the end of the motion.
 const MEASURED: &str = "t (s), rocker (deg)\n0.1, 91\n0.25, 80\n0.5, 95\n0.75, 110\n1.5, 90\n";
 
@@ -73,6 +76,7 @@ fn reports(program: &Path, scratch: &Path) -> Result<Vec<String>, String> {
     fs::write(&table, MEASURED).map_err(|error| format!("{}: {error}", table.display()))?;
     let overlay = format!("phi3={}", table.display());
     wanted.push(("four_bar-overlaid".to_string(), vec!["run", "four_bar", "--overlay", &overlay]));
+    wanted.push(("slider_crank_engine-sliding".to_string(), SLIDING.to_vec()));
     wanted.push(("pendulum-cost".to_string(), COST.to_vec()));
     let page = |options: &[&str]| if options == COST { "cost.html" } else { "report.html" };
     let pages = wanted

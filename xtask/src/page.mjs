@@ -42,6 +42,7 @@ async function open(report) {
     if (kind === 'inverse') await forces(page);
     if (report.includes('-ended/')) await end(page);
     if (report.includes('-overlaid/')) await overlaid(page);
+    if (report.includes('-sliding/')) await tools.slides(page);
     await fitsAPhone(page);
     assert.deepEqual(complaints, [], report);
     await page.close();
@@ -125,7 +126,6 @@ async function forces(page) {
     assert.ok(legend.includes('|F|') && legend.includes('x') && legend.includes('y'), legend);
 }
 
-/** A page of a motion that ends early: the end in words and marked in the drawing and the plots. */
 /** Measured points are dots over the curve, over the time and over an angle. */
 async function overlaid(page) {
     const dots = () => page.$$eval('path.measured', paths => paths.map(path => path.getAttribute('d').split('M').length - 1));
@@ -142,6 +142,7 @@ async function overlaid(page) {
     assert.ok(moved.every(distance => distance < 1), 'at constant speed they stand where they were');
 }
 
+/** A page of a motion that ends early: the end in words and marked in the drawing and the plots. */
 async function end(page) {
     assert.match(await page.textContent('#ended'), /^the motion ends at t = [\d.]+ s: /);
     assert.ok(await page.$eval('#stage', stage => stage.querySelector('path.end') !== null), 'marked in the drawing');
@@ -150,6 +151,10 @@ async function end(page) {
 }
 
 async function swing(page) {
+    // Runs of one rest are one choice, and have facts of their own.
+    const [heads, labels] = await page.evaluate(() => [[...document.querySelectorAll('#facts thead th')].slice(1).map(cell => cell.textContent),
+        JSON.parse(document.querySelector('#data').textContent).runs.map(run => run.label)]);
+    if (heads.length) assert.deepEqual(heads, labels, 'a column of facts a run');
     const modes = await page.$$('.mode svg');
     const lines = await page.$$eval('#small tbody tr', rows => rows.length);
     assert.ok(modes.length > 0 && modes.length === lines, 'every mode has a line and a picture');

@@ -183,6 +183,31 @@ export async function files(page, withVideo) {
     assert.ok(lines.length > 1, 'a line an instant');
     if (!withVideo) return;
     await page.$eval('#speed', speed => { speed.value = 10; speed.dispatchEvent(new Event('change')); });
+    const [, gif] = await download(page, '#save-gif');
+    assert.equal(gif.subarray(0, 6).toString(), 'GIF89a', 'a GIF');
+    // The browser's own decoder, and its first picture beside the PNG of the start.
+    await page.evaluate(() => document.activeElement.blur());
+    await page.keyboard.press('Home');
+    const [, still] = await download(page, '#save-png');
+    const { frames, off, moved } = await page.evaluate(async ([gif, png]) => {
+        const decoder = new ImageDecoder({ type: 'image/gif', data: new Uint8Array(gif) });
+        await decoder.tracks.ready;
+        await decoder.completed;
+        const { frameCount } = decoder.tracks.selectedTrack;
+        const pixels = (image, width, height) => {
+            const context = new OffscreenCanvas(width, height).getContext('2d');
+            context.drawImage(image, 0, 0, width, height);
+            return context.getImageData(0, 0, width, height).data;
+        };
+        const [first, later] = await Promise.all([0, Math.floor(frameCount / 3)].map(async frameIndex => (await decoder.decode({ frameIndex })).image));
+        const [width, height] = [first.displayWidth, first.displayHeight];
+        const [begin, then, drawn] = [first, later, await createImageBitmap(new Blob([new Uint8Array(png)]))].map(image => pixels(image, width, height));
+        /** Share of the pixels that differ by more than the palette and the edges of lines do. */
+        const differing = (a, b) => { let count = 0; for (let i = 0; i < a.length; i += 4) if ([0, 1, 2].some(c => Math.abs(a[i + c] - b[i + c]) > 64)) count += 1; return 4 * count / a.length; };
+        return { frames: frameCount, off: differing(begin, drawn), moved: differing(begin, then) };
+    }, [[...gif], [...still]]);
+    assert.ok(frames >= 50, `${frames} pictures of a GIF`);
+    assert.ok(off < .005 && moved > 4 * off, `of the first picture ${off} differs from the drawing, ${moved} from a later one`);
     const [, video] = await download(page, '#save-webm');
     assert.deepEqual([...video.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3], 'a WebM');
     const width = await page.evaluate(async bytes => {
@@ -191,6 +216,33 @@ export async function files(page, withVideo) {
         return video.videoWidth;
     }, [...video]);
     assert.ok(width > 600, `${width} pixels of video`);
+}
+
+/** A slider through a parameter's range: its ends are those of the text, every stop has motions of its own. */
+export async function slides(page) {
+    const { range, value, unit } = await page.evaluate(() => JSON.parse(document.querySelector('#data').textContent).slider);
+    const shown = async () => parseFloat((await page.textContent('#stop')).replace('−', '-'));
+    const near = (a, b) => Math.abs(a - b) <= 1e-4 * Math.max(Math.abs(a), Math.abs(b));
+    assert.ok(near(await shown(), value), 'it opens with the value of the run');
+    // Names of points settle where they were last.
+    const bodies = async () => digest(await page.$$eval('#stage path', paths => paths.map(path => path.getAttribute('d')).join()));
+    const opening = [await bodies(), await curves(page)], axis = (await axisTitles(page)).join();
+    for (const [end, key] of [[range[0], 'Home'], [range[1], 'End']]) {
+        await page.focus('#slide');
+        await page.keyboard.press(key);
+        await settled(page);
+        assert.ok(near(await shown(), end), `${key} is the end of the range, ${end} ${unit}: ${await shown()}`);
+        if (await page.isHidden('#reason')) assert.notEqual(await bodies(), opening[0], 'another mechanism');
+        else assert.match(await page.textContent('#reason'), / = .*: ./);
+    }
+    await page.evaluate(() => document.activeElement.blur());
+    const before = await shown();
+    await page.keyboard.press('[');
+    assert.notEqual(await shown(), before, 'the key [ goes one stop back');
+    await page.click('#slider button');
+    await settled(page);
+    assert.deepEqual([await bodies(), await curves(page)], opening, 'reset leads back');
+    assert.equal((await axisTitles(page)).join(), axis);
 }
 
 export async function units(page) {

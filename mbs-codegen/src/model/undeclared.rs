@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::Model;
 use super::names::{CONSTANTS, Elsewhere, Names, functions};
 use super::resolve::resolve;
 use super::unit_faults::parsed;
@@ -125,11 +126,13 @@ pub fn explain(statements: &[Statement], names: &mut Names, diagnostics: &mut Di
             }
             (_, Some(unit)) => format!("const {name}: {unit} = …;"),
             _ => {
-                let Some(unit) = fitting(statements, name, diagnostics.number().saturating_sub(1)) else {
+                let others = diagnostics.number().saturating_sub(1);
+                let Some((unit, is_square)) = fitting(statements, name, others) else {
                     continue;
                 };
                 let unit = if unit == "1" && is_in_angle(statements, name) { "rad" } else { unit };
-                format!("{} {name}: {unit} = …;", keyword(statements, name))
+                let keyword = if is_square { "coord" } else { keyword(statements, name) };
+                format!("{keyword} {name}: {unit} = …;")
             }
         };
         let help = match near {
@@ -220,21 +223,27 @@ const OF_ARGUMENTS: [&str; 6] = ["s", "rad", "m", "m/s", "rad/s", "N"];
 
 /// `true` if the text with one more declaration has no fault but the `others`.
 fn leaves_no_fault(statements: &[Statement], kind: StatementKind, others: usize) -> bool {
+    tried(statements, kind, others).is_some()
+}
+
+/// The text with one more declaration, if it has no fault but the `others`.
+fn tried(statements: &[Statement], kind: StatementKind, others: usize) -> Option<Model> {
     let mut tried = statements.to_vec();
     tried.push(Statement { docs: Vec::new(), kind });
     let mut diagnostics = Diagnostics::default();
-    let (_, names) = resolve(&tried, Elsewhere::default(), &mut diagnostics);
-    names.unit_faults.is_empty() && diagnostics.number() <= others
+    let (model, names) = resolve(&tried, Elsewhere::default(), &mut diagnostics);
+    (names.unit_faults.is_empty() && diagnostics.number() <= others).then_some(model)
 }
 
-/// The only unit with which the name, as a coordinate, leaves no fault but the `others`.
-fn fitting(statements: &[Statement], name: &str, others: usize) -> Option<&'static str> {
+/// The only unit with which the name, as a coordinate, leaves no fault but the `others`; `true` if the rows then fix every
+/// coordinate of a text without masses, so that a coordinate is what is missing.
+fn fitting(statements: &[Statement], name: &str, others: usize) -> Option<(&'static str, bool)> {
     if statements.len() > MOST_STATEMENTS {
         return None;
     }
-    let mut fitting = UNITS.into_iter().filter(|unit| {
+    let mut fitting = UNITS.into_iter().filter_map(|symbol| {
         let span = Span::call_site();
-        let Some(unit) = parsed(unit, span) else { return false };
+        let unit = parsed(symbol, span)?;
         let zero =
             Instruction { operation: Operation::Number { value: 0.0, unit: None, integer: true }, span };
         let kind = StatementKind::Coord {
@@ -242,7 +251,8 @@ fn fitting(statements: &[Statement], name: &str, others: usize) -> Option<&'stat
             kind: Type { unit, shape: Vec::new() },
             guess: Some(Expression { code: vec![zero] }),
         };
-        leaves_no_fault(statements, kind, others)
+        let model = tried(statements, kind, others)?;
+        Some((symbol, model.dynamics.is_none() && model.rows.len() == model.coordinates.len()))
     });
     let first = fitting.next();
     first.filter(|_| fitting.next().is_none())

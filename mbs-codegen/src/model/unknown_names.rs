@@ -11,8 +11,18 @@ use super::units::with_suffix;
 use super::uses::Undeclared;
 use super::value::{Fault, Reach};
 use crate::diagnostics::nearest;
-use crate::syntax::ast::{Expression, Instruction, Operation};
+use crate::syntax::ast::{Expression, Instruction, Operation, Operator};
 use crate::syntax::unit_symbols::DOTS;
+
+/// `true` if an instruction is an operand of a product or quotient, as the unit of `2*s` is.
+fn is_factor(code: &[Instruction], index: usize) -> bool {
+    let operation = |index: usize| code.get(index).map(|instruction| &instruction.operation);
+    let is_product = |index: usize| {
+        matches!(operation(index), Some(Operation::Binary(Operator::Multiply | Operator::Divide)))
+    };
+    let is_operand = matches!(operation(index + 1), Some(Operation::Name(_) | Operation::Number { .. }));
+    is_product(index + 1) || is_operand && is_product(index + 2)
+}
 
 impl Elaborator<'_> {
     /// Reports the unknown names after a fault, which are not evaluated any more.
@@ -104,7 +114,7 @@ impl Elaborator<'_> {
         } else if let Some(known) = nearest(name, self.names.all().chain(CONSTANTS)) {
             is_undeclared = true;
             format!("did you mean `{known}`?")
-        } else if with_suffix(1.0, name).is_ok() {
+        } else if with_suffix(1.0, name).is_ok() && is_factor(code, index) {
             format!(
                 "a unit is joined to its number, `2{name}`, or stands in brackets behind it: `30 [rad/s]`"
             )

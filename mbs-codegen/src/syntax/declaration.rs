@@ -135,7 +135,8 @@ pub fn read_let(parser: &mut Parser<'_>) -> Read<StatementKind> {
         return Err(GivenUp);
     }
     let (name, (unit, value)) = parser.declare(Declares::Value, LET, |parser, _| {
-        let unit = if parser.take(':') { Some(unit(parser)?) } else { None };
+        let has_unit = !parser.at_pair(':', '=') && parser.take(':');
+        let unit = if has_unit { Some(unit(parser)?) } else { None };
         if !foreign::takes_value(parser) {
             return parser.expected("`=`", LET);
         }

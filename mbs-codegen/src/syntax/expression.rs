@@ -269,6 +269,7 @@ impl Reader {
                 };
                 return missing::second_operand(parser, around);
             }
+            Some(_) if !close && foreign::at_comparison(parser) => return foreign::comparison(parser),
             Some(_) if !close => {
                 return parser
                     .expected("an operator or a closing bracket", "two operands need an operator: `2*x`");

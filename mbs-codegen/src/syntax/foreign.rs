@@ -264,20 +264,45 @@ pub fn method(parser: &mut Parser<'_>, owner: &str, word: &str) {
     );
 }
 
-/// Reports `==` in place of the `=` of a declaration, which it takes; `true` if there was either.
+/// Reports `==` or `:=` in place of the `=` of a declaration, which it takes; `true` if there was any.
 pub fn takes_value(parser: &mut Parser<'_>) -> bool {
-    if !parser.at_pair('=', '=') {
-        return parser.take('=');
-    }
+    let message = match () {
+        () if parser.at_pair('=', '=') => "`==` is the sign of equations",
+        () if parser.at_pair(':', '=') => "`:=` is no sign of a text",
+        () => return parser.take('='),
+    };
     let span = parser.span();
     parser.skip(2);
     let value = quoted(until_end(parser));
     parser.diagnostics.report(
         span,
-        "`==` is the sign of equations",
+        message,
         format!("a declaration sets its value with one `=`: `= {value};`"),
     );
     true
+}
+
+/// `true` at a sign that compares two values.
+pub fn at_comparison(parser: &Parser<'_>) -> bool {
+    matches!(parser.peek(), TokenKind::Punctuation('<' | '>' | '?', _))
+        || parser.at_pair('!', '=')
+        || parser.at_pair('&', '&')
+        || parser.at_pair('|', '|')
+}
+
+/// Reports a comparison behind a value, which is at the cursor; a choice by `?` at its mark.
+pub fn comparison<T>(parser: &mut Parser<'_>) -> Read<T> {
+    let is_mark = |token: &Token| matches!(token.kind, TokenKind::Punctuation('?', _));
+    if let Some(mark) = until_end(parser).iter().position(is_mark) {
+        parser.skip(mark);
+        return condition(parser);
+    }
+    parser.diagnostics.report(
+        parser.span(),
+        "a value has no comparison: its equations hold at all times",
+        format!("conditions stand in `branch` and `limit`; {NO_IF}"),
+    );
+    Err(GivenUp)
 }
 
 /// Reports `mut` of Rust, which is at the cursor; the tokens behind are those of a `let`.

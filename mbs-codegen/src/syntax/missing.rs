@@ -56,7 +56,7 @@ pub fn second_operand<T>(parser: &mut Parser<'_>, around: Around) -> Read<T> {
         )
     } else if around == Around::Array {
         let message = format!("a comma is missing between `{left}` and `{right}`");
-        (message, format!("write `[{left}, {right}]` for two components, `{left}*{right}` for a product"))
+        (message, format!("write `{left}, {right}` for two components, `{left}*{right}` for a product"))
     } else if around == Around::Call {
         let message = format!("an operator or a comma is missing between `{left}` and `{right}`");
         (message, format!("write `{left}*{right}` for a product, `{left}, {right}` for two arguments"))

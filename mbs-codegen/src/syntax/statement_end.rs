@@ -1,5 +1,6 @@
 //! End of a statement: its `;`, and the beginning of the next one.
 
+use super::foreign;
 use super::keywords::{LATER, STATEMENTS};
 use super::missing;
 use super::parser::{Parser, Read, doc_attribute};
@@ -41,6 +42,7 @@ pub fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
     match parser.peek() {
         TokenKind::Identifier(_) | TokenKind::Literal(_) | TokenKind::Open('(') => parser
             .expected("an operator or `;`", "two operands need an operator: `2*x`; behind them stands a `;`"),
+        _ if foreign::at_comparison(parser) => foreign::comparison(parser),
         _ => parser.expected("`;`", help),
     }
 }

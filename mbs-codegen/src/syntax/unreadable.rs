@@ -14,8 +14,7 @@ pub struct Unreadable {
 }
 
 /// Characters that are none of Rust's, and what stands in their place.
-const CHARACTERS: [(&str, &str); 13] = [
-    ("°º", "write degrees as a unit: `50deg`"),
+const CHARACTERS: [(&str, &str); 12] = [
     ("×⋅∙∗", "write a product with `*`"),
     ("÷", "write a quotient with `/`"),
     ("−–—", "write a minus sign with `-`"),
@@ -32,16 +31,67 @@ const CHARACTERS: [(&str, &str); 13] = [
 
 /// The first fault of a text that the lexer refuses; `None` where it is none of those that are known.
 pub fn unreadable(source: &str) -> Option<Unreadable> {
-    let mut open: Vec<(char, usize, usize)> = Vec::new();
+    scan(source, false)
+}
+
+/// The first fault of a call of `mechanism!` in a Rust source that the lexer refuses, at its place in the source; `None` where the
+/// source is at fault elsewhere.
+pub fn unreadable_call(rust: &str) -> Option<Unreadable> {
+    const CALL: &str = "mechanism!";
+    rust.match_indices(CALL).find_map(|(at, _)| {
+        let begin = at + CALL.len();
+        let behind = rust.get(begin..)?;
+        let is_call = behind.trim_start().starts_with(['{', '(', '[']);
+        let before = rust.get(..begin)?;
+        // A line comment, or a name that ends alike.
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        let is_word = line.strip_suffix(CALL)?.ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        let fault =
+            if is_call && !is_word && !line.contains("//") { scan(behind, true)? } else { return None };
+        let column = if fault.line == 1 { fault.column + line.chars().count() } else { fault.column };
+        Some(Unreadable { line: fault.line + before.matches('\n').count(), column, ..fault })
+    })
+}
+
+/// Columns that a line begins with blank.
+#[derive(Default)]
+struct Indentation {
+    columns: usize,
+    /// `true` at the first character of the line that is not blank.
+    is_first: bool,
+    is_inside: bool,
+}
+
+impl Indentation {
+    fn see(&mut self, character: char, column: usize) {
+        if character == '\n' {
+            *self = Indentation::default();
+            return;
+        }
+        self.is_first = !self.is_inside && !character.is_whitespace();
+        if self.is_first {
+            (self.columns, self.is_inside) = (column - 1, true);
+        }
+    }
+}
+
+/// `is_call`: the text stands in brackets, behind which the scan ends.
+fn scan(source: &str, is_call: bool) -> Option<Unreadable> {
+    let mut open: Vec<(char, usize, usize, usize)> = Vec::new();
     let (mut line, mut column) = (1, 0);
     let mut characters = source.chars().peekable();
-    // First character of the word that the previous one ends.
+    // First character of the word that the previous one ends, and the last word or number.
     let (mut previous, mut first) = (' ', ' ');
+    let mut word = String::new();
+    // Indentation of the line, and the first brace whose own line is indented deeper than the one that closes it.
+    let mut indentation = Indentation::default();
+    let mut doubtful = None;
     let fault = |line, column, message: String, help: &str| {
         Some(Unreadable { line, column, message, help: help.into() })
     };
     while let Some(character) = characters.next() {
         column += 1;
+        indentation.see(character, column);
         match character {
             '\n' => (line, column) = (line + 1, 0),
             '/' if characters.peek() == Some(&'/') => {
@@ -82,21 +132,37 @@ pub fn unreadable(source: &str) -> Option<Unreadable> {
                 return fault(line, column, "a tick stands behind a number".into(), help);
             }
             '\'' if previous.is_alphanumeric() || matches!(previous, '_' | ')' | ']') => {
-                let help = "write a rate as `der(x)`, an acceleration as `der2(x)`";
-                return fault(line, column, "a tick is no derivative".into(), help);
+                let of = if previous == '_' || previous.is_alphanumeric() { word.as_str() } else { "x" };
+                let help = match characters.peek() {
+                    Some('\'') => format!("write an acceleration as `der2({of})`"),
+                    _ => format!("write a rate as `der({of})`, an acceleration as `der2({of})`"),
+                };
+                return fault(line, column, "a tick is no derivative".into(), &help);
             }
-            '(' | '[' | '{' => open.push((character, line, column)),
+            '°' | 'º' => {
+                let number = if word.parse::<f64>().is_ok() { word.as_str() } else { "50" };
+                let help = format!("write degrees as a unit: `{number}deg`");
+                return fault(line, column, format!("`{character}` is no character of a text"), &help);
+            }
+            '(' | '[' | '{' => open.push((character, line, column, indentation.columns)),
             ')' | ']' | '}' => match open.pop() {
                 None => {
                     let message = format!("`{character}` closes no bracket");
                     return fault(line, column, message, "remove it, or open the bracket that it closes");
                 }
-                Some((bracket, ..)) if closing(bracket) == character => {}
+                Some((bracket, at, place, columns)) if closing(bracket) == character => {
+                    if indentation.is_first && indentation.columns < columns && at < line {
+                        doubtful = doubtful.or(Some((bracket, at, place)));
+                    }
+                    if is_call && open.is_empty() {
+                        return None;
+                    }
+                }
                 Some(_) if !open.iter().any(|(outer, ..)| closing(*outer) == character) => {
                     let message = format!("`{character}` closes no bracket");
                     return fault(line, column, message, "remove it, or open the bracket that it closes");
                 }
-                Some((bracket, line, column)) => {
+                Some((bracket, line, column, _)) => {
                     let (message, help) = (
                         format!("`{bracket}` is never closed"),
                         format!("close it with `{}`", closing(bracket)),
@@ -116,9 +182,18 @@ pub fn unreadable(source: &str) -> Option<Unreadable> {
             (false, true) => character,
             _ => ' ',
         };
+        let is_number = word.starts_with(|c: char| c.is_ascii_digit());
+        let is_point = character == '.' && previous.is_ascii_digit() && is_number;
+        if is_word(character) || is_point {
+            if !(is_word(previous) || previous == '.' && word.ends_with('.')) {
+                word.clear();
+            }
+            word.push(character);
+        }
         previous = character;
     }
-    let (bracket, line, column) = open.pop()?;
+    let (bracket, line, column, _) = open.pop()?;
+    let (bracket, line, column) = doubtful.unwrap_or((bracket, line, column));
     fault(
         line,
         column,
@@ -159,7 +234,25 @@ mod tests {
         assert_eq!(message("L1 == phi1'"), "a tick is no derivative");
         assert_eq!(message("L1 == 2\""), "a quote is no unit");
         assert_eq!(place("title \"a°b\"; (c)"), None);
+        let help = |text: &str| unreadable(text).map(|fault| fault.help).unwrap_or_default();
+        assert_eq!(help("a = sin(phi + 22.5°)"), "write degrees as a unit: `22.5deg`");
+        assert_eq!(help("a = 90 °"), "write degrees as a unit: `90deg`");
+        assert_eq!(help("w = theta''"), "write an acceleration as `der2(theta)`");
+        assert_eq!(help("w = (a + b)'"), "write a rate as `der(x)`, an acceleration as `der2(x)`");
+        // The brace whose block ends at a line that is indented less.
+        assert_eq!(place("m {\n    a {\n        b;\n    c {\n        d;\n    }\n}\n"), Some((2, 7)));
+        assert_eq!(place("m {\n    a { b; }\n"), Some((1, 3)));
         let span = span_at(3, 7).start();
         assert_eq!((span.line, span.column), (3, 6));
+    }
+
+    #[test]
+    fn a_call_in_a_rust_source_has_the_places_of_the_source() {
+        let place = |text: &str| unreadable_call(text).map(|fault| (fault.line, fault.column));
+        assert_eq!(place("//! No mechanism! here.\nfn f() {}\n\nmechanism! {\n  a = 5°;\n}\n"), Some((5, 8)));
+        assert_eq!(place("mbs_runtime::mechanism! { phi' }"), Some((1, 30)));
+        assert_eq!(place("mechanism! {\n  m { a;\n}\nfn g() {}\n"), Some((2, 5)));
+        assert_eq!(place("mechanism! { a }\nfn g() { '"), None);
+        assert_eq!(place("fn g() { ° }"), None);
     }
 }

@@ -4,9 +4,9 @@ use std::fs;
 
 use clap::Args;
 
+use super::CommandError;
 use super::summary::{significant, unit};
 use super::target::Target;
-use super::{CommandError, analysis::Analysis};
 use crate::erased::erase::Erased;
 use crate::erased::facade::{AnyEquations, Motion};
 use crate::mismatch::{array, nearest, wrapped};
@@ -60,17 +60,10 @@ impl Tables {
     pub fn feed(
         &self,
         target: &Target,
-        analysis: Analysis,
         instances: &mut [(mbs_codegen::picture::Preset, Erased)],
     ) -> Result<Option<[f64; 2]>, CommandError> {
         if self.inputs.is_empty() {
             return Ok(None);
-        }
-        if analysis != Analysis::Kinematics {
-            return Err(CommandError::Usage(format!(
-                "`--input` is for motions that drives prescribe: `mbs kinematics {}`",
-                target.name()
-            )));
         }
         let mut range = [f64::NEG_INFINITY, f64::INFINITY];
         for (k, given) in self.inputs.iter().enumerate() {

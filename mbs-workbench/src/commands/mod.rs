@@ -35,6 +35,7 @@ mod report_files;
 mod rows;
 pub mod run;
 mod run_files;
+mod slide;
 pub mod structure;
 pub mod study;
 mod summary;

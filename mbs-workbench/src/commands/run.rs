@@ -20,6 +20,7 @@ use super::document::Output;
 use super::measured::{Tables, compared, decimate};
 use super::report_files::{announce_size, require_writable, write_report};
 use super::run_files::{PageContent, animated, described, facts, modes, page, values};
+use super::slide::{Slide, Slider, slide};
 use super::target::Target;
 use super::{CommandError, positive, summary};
 
@@ -46,6 +47,9 @@ pub struct Selection {
     /// Directory for the report [default: mbs/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Give the page a slider for a parameter with a range in the text, with runs at N values from end to end [default: 11]
+    #[arg(long, value_name = "NAME[=N]", value_parser = slide)]
+    slide: Option<Slide>,
     /// Let the page load itself anew when it is written again
     #[arg(long)]
     reload: bool,
@@ -277,6 +281,9 @@ impl Arguments {
         if let Some(at) = self.at {
             command.push_str(&format!(" --at {at}"));
         }
+        if let Some(slide) = &self.selection.slide {
+            command.push_str(&slide.command());
+        }
         for guess in &self.guesses {
             command.push_str(&format!(" --guess {}", guess.written()));
         }
@@ -293,7 +300,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let target = Target::find(catalogue, &arguments.selection.name)?;
     let mut instances = target.instances(&arguments.selection.parameters)?;
     let mut request = arguments.request(&target);
-    if let Some(range) = arguments.tables.feed(&target, request.analysis_of(&target), &mut instances)? {
+    if let Some(range) = arguments.tables.feed(&target, &mut instances)? {
         let until = *request.until.get_or_insert(range[1]);
         arguments.tables.require_data(range, until)?;
     }
@@ -314,7 +321,18 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     if done.is_empty() {
         return Err(CommandError::Failed(left_out.join("\n")));
     }
-    drop_idle(&mut done.iter_mut().map(|done| &mut done.motion).collect::<Vec<_>>());
+    let slider = arguments.selection.slide.as_ref().map(|slide| {
+        slide.slider(&target, &request, || {
+            let mut instances = target.instances(&arguments.selection.parameters)?;
+            arguments.tables.feed(&target, &mut instances)?;
+            Ok(instances)
+        })
+    });
+    let mut slider: Option<Slider> = slider.transpose()?;
+    let stops = slider
+        .iter_mut()
+        .flat_map(|slider| slider.stops.iter_mut().flat_map(|stop| stop.runs.iter_mut().flatten()));
+    drop_idle(&mut done.iter_mut().chain(stops).map(|done| &mut done.motion).collect::<Vec<_>>());
     for done in &mut done {
         done.figures.extend(overlays.iter().filter_map(|overlay| compared(overlay, &done.motion)));
     }
@@ -327,6 +345,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         analysis: request.analysis_of(&target).word(),
         facts: &facts,
         overlays: &decimate(&overlays),
+        slider: slider.as_ref(),
     };
     let page = page(&target, &instances, &done, &content);
     let origin = out.put_mechanism(&target, instances[0].1.equations());

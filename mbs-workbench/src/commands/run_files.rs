@@ -7,15 +7,15 @@ use serde_json::{Value, json};
 use super::analysis::RunResult;
 use super::measured::Tables;
 use super::target::Target;
-use super::{CommandError, summary};
+use super::{CommandError, slide, summary};
 use crate::erased::dynamics::linearization::SmallMotions;
 use crate::erased::erase::Erased;
 use crate::erased::facade::{AnyEquations, Motion};
 use crate::output::animation::animation;
 use crate::output::csv;
 use crate::output::origin::Origin;
-use crate::output::places::places;
-use crate::output::report::{ForceArrow, Overlay, Report, Run, html};
+use crate::output::places::{PlaceCurve, places};
+use crate::output::report::{ForceArrow, Overlay, Report, Run, Slider, SliderStop, html};
 use crate::output::shapes::shapes;
 
 /// Instants of a run on the page, at most; beyond them a browser slows down and an eye sees no more.
@@ -102,6 +102,42 @@ pub struct PageContent<'a> {
     pub analysis: &'a str,
     pub facts: &'a [[String; 2]],
     pub overlays: &'a [Overlay],
+    pub slider: Option<&'a slide::Slider>,
+}
+
+/// Motions as a page shows them, with what they draw beside outputs.
+struct Shown<'a> {
+    done: &'a [RunResult],
+    drawn: Vec<(Motion, Vec<PlaceCurve>)>,
+}
+
+impl<'a> Shown<'a> {
+    /// At most `most` instants of each motion of `instances`.
+    fn of(target: &Target, instances: &[(Preset, Erased)], done: &'a [RunResult], most: usize) -> Self {
+        let drawn = done.iter().map(|done| {
+            let motion = done.motion.decimate(most);
+            let mechanism = instances[done.instance].1.equations();
+            let places = places(target.picture(), mechanism, &motion, done.small.as_ref());
+            (motion, places)
+        });
+        Shown { done, drawn: drawn.collect() }
+    }
+
+    fn runs(&self) -> Vec<Run<'_>> {
+        let mut runs = Vec::new();
+        for (done, (motion, places)) in self.done.iter().zip(&self.drawn) {
+            runs.push(Run {
+                label: &done.label,
+                description: &done.description,
+                motion,
+                places,
+                verdict: done.verdict.as_ref(),
+                ended: done.ended.as_ref().map(|ended| ended.line.as_str()),
+                small: done.small.as_ref(),
+            });
+        }
+        runs
+    }
 }
 
 /// The page of the report.
@@ -111,27 +147,32 @@ pub fn page(
     done: &[RunResult],
     content: &PageContent,
 ) -> String {
-    let PageContent { command, analysis, facts, overlays } = *content;
-    let columns: usize = done.iter().map(|done| done.motion.columns()).sum();
-    let shown = (NUMBERS / columns.max(1)).clamp(LEAST_SHOWN, SHOWN);
-    let shown: Vec<Motion> = done.iter().map(|done| done.motion.decimate(shown)).collect();
-    let drawn = done.iter().zip(&shown).map(|(done, motion)| {
-        let mechanism = instances[done.instance].1.equations();
-        places(target.picture(), mechanism, motion, done.small.as_ref())
+    let PageContent { command, analysis, facts, overlays, slider } = *content;
+    let stops = slider.map_or(&[][..], |slider| &slider.stops);
+    let all = done.iter().chain(stops.iter().flat_map(|stop| stop.runs.iter().flatten()));
+    let columns: usize = all.map(|done| done.motion.columns()).sum();
+    let most = (NUMBERS / columns.max(1)).clamp(LEAST_SHOWN, SHOWN);
+    let shown = Shown::of(target, instances, done, most);
+    let stops: Vec<_> = stops
+        .iter()
+        .map(|stop| {
+            let shown = stop.runs.as_ref().map(|runs| Shown::of(target, &stop.instances, runs, most));
+            (stop.value, shown)
+        })
+        .collect();
+    let stops = stops.iter().map(|(value, shown)| SliderStop {
+        value: *value,
+        runs: shown.as_ref().map_or_else(|_| Vec::new(), Shown::runs),
+        reason: shown.as_ref().err().map(|reason| reason.as_str()),
     });
-    let drawn: Vec<_> = drawn.collect();
-    let mut runs = Vec::new();
-    for ((done, motion), places) in done.iter().zip(&shown).zip(&drawn) {
-        runs.push(Run {
-            label: &done.label,
-            description: &done.description,
-            motion,
-            places,
-            verdict: done.verdict.as_ref(),
-            ended: done.ended.as_ref().map(|ended| ended.line.as_str()),
-            small: done.small.as_ref(),
-        });
-    }
+    let slider = slider.map(|slider| Slider {
+        name: &slider.name,
+        unit: &slider.unit,
+        value: slider.value,
+        range: slider.range,
+        tolerance: slider.tolerance,
+        stops: stops.collect(),
+    });
     let forces = &target.picture().forces;
     let forces: Vec<ForceArrow> =
         forces.iter().map(|force| ForceArrow { of: &force.output, at: &force.at }).collect();
@@ -142,10 +183,11 @@ pub fn page(
         source: instances[0].1.equations().source(),
         command,
         facts,
-        runs: &runs,
+        runs: &shown.runs(),
         drawing: &shapes(target.shapes()),
         forces: &forces,
         overlays,
+        slider: slider.as_ref(),
         origin: &Origin::of_text(target.name(), instances[0].1.equations().source()).line(),
         analysis,
     })

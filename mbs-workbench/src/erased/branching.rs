@@ -34,7 +34,7 @@ impl<B: AsRef<[f64]>> AsRef<[f64]> for Counted<B> {
     }
 }
 
-/// Hands the constants of a mechanism with their types to a macro.
+/// Hands the constants of a mechanism with their types to a macro, but for `HAS_SIGNALS`.
 macro_rules! constants {
     ($apply:ident) => {
         $apply! {
@@ -57,7 +57,6 @@ macro_rules! constants {
             const TURNS: &'static [u16];
             const OUTPUTS: &'static [Entry];
             const FUNCTIONS: &'static [FunctionEntry];
-            const HAS_SIGNALS: bool;
         }
     };
 }
@@ -83,6 +82,8 @@ macro_rules! forward {
     };
 }
 
+pub(super) use {constants, forward};
+
 impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, M> for Branching<S> {
     type Parameters = S::Parameters;
     type Position = S::Position;
@@ -96,6 +97,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     type Lane = S::Lane;
 
     constants!(forward);
+    const HAS_SIGNALS: bool = S::HAS_SIGNALS;
 
     forward! {
         fn get(self, index: usize) -> Option<f64>;
@@ -312,6 +314,7 @@ mod tests {
             };
         }
         constants!(compare);
+        assert_eq!(<Branching<S> as Mechanism<f64, N, M>>::HAS_SIGNALS, S::HAS_SIGNALS);
         assert_eq!(<Branching<S> as Kinematic<f64, N, M>>::BLOCK_BY_BLOCK, S::BLOCK_BY_BLOCK);
     }
 

@@ -4,8 +4,10 @@ use mbs_runtime::{Dynamic, Kinematic, Mechanism, Partitioned, Reveal, Visitor};
 
 use super::dynamics::AnyDynamics;
 use super::dynamics::direct_dynamics::PartitionedFunctions;
-use super::dynamics::integrators::{All, ExplicitOnly};
-use super::facade::{AnyEquations, AnyMechanism, Facade, Feeds};
+use super::dynamics::integrators::{All, ExplicitOnly, Integrators};
+use super::facade::{AnyEquations, AnyMechanism, Facade};
+use super::fed::{Fed, may_have_inputs};
+use super::feeds::Feeds;
 
 /// A mechanism of any size.
 pub enum Erased {
@@ -61,6 +63,20 @@ pub fn erase<S: Reveal>(mechanism: S) -> Erased {
 
 struct Erase;
 
+/// A mechanism with masses whose inputs can follow courses.
+type WithInputs<S, I, const N: usize, const M: usize> =
+    Facade<Fed<S>, N, M, PartitionedFunctions<Fed<S>, I, N, M>>;
+
+fn with_inputs<S, I, const N: usize, const M: usize>(mechanism: S) -> WithInputs<S, I, N, M>
+where
+    S: Dynamic<f64, N, M> + 'static,
+    I: Integrators,
+{
+    let mut partitioned = PartitionedFunctions::of();
+    partitioned.feed = Fed::feed::<N, M>;
+    Facade(Fed::of(mechanism), partitioned, Feeds::default())
+}
+
 impl<S: 'static> Visitor<S> for Erase {
     type Output = Erased;
 
@@ -82,6 +98,9 @@ impl<S: 'static> Visitor<S> for Erase {
     where
         S: Kinematic<f64, N, M> + Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
+        if const { may_have_inputs(S::SOURCE) } {
+            return Erased::Fixed(Box::new(with_inputs::<S, All, N, M>(mechanism)));
+        }
         let partitioned = PartitionedFunctions::<S, All, N, M>::of();
         Erased::Fixed(Box::new(Facade::<S, N, M, _>(mechanism, partitioned, Feeds::default())))
     }
@@ -90,6 +109,9 @@ impl<S: 'static> Visitor<S> for Erase {
     where
         S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
+        if const { may_have_inputs(S::SOURCE) } {
+            return Erased::Free(Box::new(with_inputs::<S, All, N, M>(mechanism)));
+        }
         let partitioned = PartitionedFunctions::<S, All, N, M>::of();
         Erased::Free(Box::new(Facade::<S, N, M, _>(mechanism, partitioned, Feeds::default())))
     }
@@ -98,6 +120,9 @@ impl<S: 'static> Visitor<S> for Erase {
     where
         S: Kinematic<f64, N, M> + Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
+        if const { may_have_inputs(S::SOURCE) } {
+            return Erased::Fixed(Box::new(with_inputs::<S, ExplicitOnly, N, M>(mechanism)));
+        }
         let partitioned = PartitionedFunctions::<S, ExplicitOnly, N, M>::of();
         Erased::Fixed(Box::new(Facade::<S, N, M, _>(mechanism, partitioned, Feeds::default())))
     }
@@ -106,6 +131,9 @@ impl<S: 'static> Visitor<S> for Erase {
     where
         S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
+        if const { may_have_inputs(S::SOURCE) } {
+            return Erased::Free(Box::new(with_inputs::<S, ExplicitOnly, N, M>(mechanism)));
+        }
         let partitioned = PartitionedFunctions::<S, ExplicitOnly, N, M>::of();
         Erased::Free(Box::new(Facade::<S, N, M, _>(mechanism, partitioned, Feeds::default())))
     }

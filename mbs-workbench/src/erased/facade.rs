@@ -11,6 +11,7 @@ use mbs_runtime::{
 use crate::erased::branching::Branching;
 use crate::erased::dynamics::AnyDynamics;
 use crate::erased::experiment::Experiment;
+use crate::erased::feeds::Feeds;
 use crate::erased::masses::{Loads, Masses, Tables};
 use crate::motion;
 use crate::motion::course::Course;
@@ -25,8 +26,8 @@ pub trait AnyEquations {
     fn get(&self, index: usize) -> Option<f64>;
     /// Sets a parameter or input, in the unit of the text; false where there is none at `index`.
     fn set(&mut self, index: usize, value: f64) -> bool;
-    /// Makes the input at `index` follow `course` in the unit of the text, with its rates where the text asks for them. Motions that
-    /// drives prescribe have it at every instant. `false` where it cannot be.
+    /// Makes the input at `index` follow `course` in the unit of the text, with its rates where the text asks for them. Motions have it
+    /// at every instant. `false` where it cannot be.
     fn feed(&mut self, _index: usize, _course: Course) -> bool {
         false
     }
@@ -192,38 +193,6 @@ pub struct Functions {
 #[derive(Clone, Debug)]
 pub struct Facade<S, const N: usize, const M: usize = N, F = ()>(pub S, pub(super) F, pub(super) Feeds);
 
-/// Courses of inputs by the index of the value, `true` where its rates are the variables behind it.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Feeds(Vec<(usize, bool, Course)>);
-
-// Nothing here is generic, so that it is compiled once.
-impl Feeds {
-    /// Makes the input at `index` of `entries` follow `course`.
-    fn feed(&mut self, entries: &[Entry], index: usize, course: Course) -> bool {
-        let Some(entry) = entries.get(index) else { return false };
-        let rate = format!("{}.rate", entry.name);
-        let has_rates = entries.get(index + 1).is_some_and(|next| next.name == rate);
-        self.0.retain(|(known, ..)| *known != index);
-        self.0.push((index, has_rates, course));
-        true
-    }
-
-    /// Values of variables at `t` (s), by index.
-    fn at(&self, t: f64) -> Vec<(usize, f64)> {
-        let values = |(index, has_rates, course): &(usize, bool, Course)| {
-            let (index, count) = (*index, if *has_rates { 3 } else { 1 });
-            let values = course.at(t).into_iter().take(count).enumerate();
-            values.map(move |(order, value)| (index + order, value)).collect::<Vec<_>>()
-        };
-        self.0.iter().flat_map(values).collect()
-    }
-
-    /// Value of the variable at `index` at `t` (s), where it follows a course.
-    fn value(&self, index: usize, t: f64) -> Option<f64> {
-        self.at(t).into_iter().find(|(fed, _)| *fed == index).map(|(_, value)| value)
-    }
-}
-
 /// Masses and forces of `S`, as a part of its [`Facade`]; `()` where it has none.
 pub trait Forced<S, const N: usize, const M: usize>: Sized {
     /// Names beyond the kinematics.
@@ -346,7 +315,7 @@ where
             }
         }
         let mut failure = failure?;
-        if self.2.0.is_empty() {
+        if self.2.is_empty() {
             let ReachLimit { reachable, refused, failure, .. } = stepper.reach_towards(refused)?;
             return Some(MotionStop { reachable, refused, failure });
         }
@@ -379,14 +348,14 @@ impl<S: Kinematic<f64, N, M>, F, const N: usize, const M: usize> Facade<S, N, M,
 
     /// The mechanism with its inputs of the time `t` (s).
     fn set_inputs(&self, mechanism: &mut Branching<S>, t: f64) {
-        for (index, value) in self.2.at(t) {
+        self.2.show(t, |index, value| {
             mechanism.set(index, value);
-        }
+        });
     }
 
     /// A step to `t` (s) with the inputs of that time.
     fn lead(&self, stepper: &mut Stepper<Branching<S>, f64, N, M>, t: f64) -> Result<(), Failure> {
-        if !self.2.0.is_empty() {
+        if !self.2.is_empty() {
             stepper.change(|mechanism| self.set_inputs(mechanism, t));
         }
         stepper.advance_to(t).map(|_| ())

@@ -15,6 +15,8 @@ pub mod erase;
 pub mod exact;
 pub mod experiment;
 pub mod facade;
+pub mod fed;
+pub mod feeds;
 pub mod formulas;
 #[cfg(feature = "program")]
 pub mod in_double;

@@ -22,6 +22,8 @@ const SCRIPT: &str = concat!(
     "\n",
     include_str!("report/camera.js"),
     "\n",
+    include_str!("report/gif.js"),
+    "\n",
     include_str!("report/save.js"),
     "\n",
     include_str!("report/plots.js"),
@@ -63,8 +65,41 @@ pub struct Report<'a> {
     /// Measured points.
     #[serde(skip_serializing_if = "<[Overlay]>::is_empty")]
     pub overlays: &'a [Overlay],
+    /// A parameter that the page slides through its range.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slider: Option<&'a Slider<'a>>,
     /// The analysis: `kinematics`, `simulation`, `equilibrium`, `inverse` or `modes`.
     pub analysis: &'a str,
+}
+
+/// A parameter with its range and motions at some of its values.
+#[derive(Clone, Debug, Serialize)]
+pub struct Slider<'a> {
+    /// Name, with the component of an array.
+    pub name: &'a str,
+    /// Unit of the values.
+    pub unit: &'a str,
+    /// Value of the page's runs.
+    pub value: f64,
+    /// Least and largest value.
+    pub range: [f64; 2],
+    /// Largest deviation of a part that is made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// The other stops, ascending.
+    pub stops: Vec<SliderStop<'a>>,
+}
+
+/// A value of a slider, with the same runs as the page or with the reason why there are none.
+#[derive(Clone, Debug, Serialize)]
+pub struct SliderStop<'a> {
+    /// The value.
+    pub value: f64,
+    /// Runs in the order of the page's.
+    pub runs: Vec<Run<'a>>,
+    /// One line, where there are no runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<&'a str>,
 }
 
 /// A force that is drawn as an arrow.
@@ -190,6 +225,7 @@ mod tests {
             }],
             forces: &[ForceArrow { of: "bearing", at: "O" }],
             overlays: &[],
+            slider: None,
             analysis: "kinematics",
             drawing: &shapes(&[
                 Shape::Joint { at: name("O") },

@@ -150,7 +150,33 @@ pub fn checked(argument: &str) -> Result<Checked, TextFileError> {
             Err(found) => faults.extend(found),
         }
     }
+    for (index, call) in calls.iter().enumerate() {
+        let same = |other: &&Call| other.name.is_some() && other.name == call.name;
+        if let Some(first) = calls[..index].iter().find(same) {
+            warnings.push(repeated(call, first.line));
+        }
+    }
     Ok(Checked { texts: calls.len(), faults, warnings, path, content })
+}
+
+/// Warning about a second text of one name.
+fn repeated(call: &Call, first: usize) -> Fault {
+    let name = call.name.clone().unwrap_or_default();
+    let header = format!("mechanism {name}");
+    let mut lines = call.source.lines().enumerate().skip(call.line.saturating_sub(1));
+    let found = lines.find_map(|(index, text)| {
+        let before = text.find(&header)? + header.len() - name.len();
+        Some((index + 1, text[..before].chars().count()))
+    });
+    let (line, before) = found.unwrap_or((call.line, 0));
+    Fault {
+        line,
+        column: before + 1,
+        end_line: line,
+        end_column: before + 1 + name.chars().count(),
+        message: format!("`{name}` is the name of the mechanism in line {first} as well"),
+        help: "give each a name of its own, or put one into a module".to_string(),
+    }
 }
 
 /// A mechanism or scene in a file.
@@ -373,6 +399,18 @@ mod tests {
             let error = TextFile::read(&path).expect_err("no text");
             assert!(error.is_usage() && error.to_string().contains(cure), "{error}");
         }
+        let twice = "mechanism! { pub mechanism A; coord x: m; drive d: x == 1 [m/s]*t; }\n";
+        let twice = checked(&file("twice.rs", &twice.repeat(2))).expect("two texts");
+        assert_eq!((twice.texts, twice.faults.len(), twice.warnings.len()), (2, 0, 1));
+        let Fault { line, column, message, .. } = &twice.warnings[0];
+        assert_eq!(
+            (*line, *column, message.as_str()),
+            (2, 28, "`A` is the name of the mechanism in line 1 as well")
+        );
+        let tick =
+            file("tick.rs", "fn f() {}\nmechanism! {\n    pub mechanism A;\n    out w: 1/s = phi';\n}");
+        let error = checked(&tick).err().expect("a tick").to_string();
+        assert!(error.contains("tick.rs:4:21") && error.contains("write a rate as `der(phi)`"), "{error}");
         let open = file("open.rs", "fn f() {\n    (\n}");
         let error = TextFile::read(&open).expect_err("a bracket");
         assert!(error.to_string().contains("close every bracket"), "{error}");

@@ -48,6 +48,7 @@ const HOUSES: &[House] = &[
         source: "mbs-codegen/src",
         rooms: &[
             "diagnostics",
+            "second_reading",
             "sample_points",
             "syntax",
             "syntax_tree",

@@ -16,6 +16,7 @@ use super::start::{Start, moved_start, start, text_start};
 use super::work_by_source::{Quadrature, Single, add_works};
 use super::{AnyDynamics, power_balance};
 use crate::erased::facade::{Motion, State};
+use crate::erased::feeds::Feeds;
 
 /// Stabilisation of the constraints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,6 +150,8 @@ pub struct Simulated {
 /// Functions that need the partition into dependent and independent coordinates, for a mechanism of type `S` that is moved by
 /// integrators of `I`.
 pub struct PartitionedFunctions<S: 'static, I, const N: usize, const M: usize> {
+    /// Makes the inputs follow their courses from a time (s) on; of a mechanism without inputs nothing.
+    pub feed: fn(&mut S, &Feeds, f64),
     /// The start at a time (s).
     pub start: fn(&S, f64) -> Start<N>,
     /// Formulation in independent coordinates; that in all rows together where there are none.
@@ -176,6 +179,7 @@ where
     /// and is projected onto all rows together.
     pub fn of() -> Self {
         PartitionedFunctions {
+            feed: |_, _, _| (),
             start: if S::IS_PARTITIONED { start::<S, N, M> } else { text_start::<S, N, M> },
             velocity: if S::IS_PARTITIONED { || &VelocityTransformation } else { || &STAGES },
             is_partitioned: S::IS_PARTITIONED,

@@ -9,16 +9,18 @@ use super::{determined, power_balance};
 use crate::erased::facade::Motion;
 use crate::motion::Forces;
 
-/// Adds energies, loads, multipliers, powers and works to the positions of `motion`, at which the rows hold.
+/// Adds energies, loads, multipliers, powers and works to the positions of `motion`, at which the rows hold. `lead` sets the inputs
+/// of a time (s).
 pub(crate) fn add_forces<S: Dynamic<f64, N, M>, I: Integrators, const N: usize, const M: usize>(
-    mechanism: &S,
+    mut mechanism: S,
+    lead: &mut dyn FnMut(&mut S, f64),
     motion: &mut Motion,
 ) -> Result<(), Failure> {
-    let mut mechanism = mechanism.clone();
     let mut forces = Forces::of(S::LOADS, S::ROWS);
     let (mut before, mut run) = (None, None);
     for (index, t) in motion.time.iter().enumerate() {
         let q: [f64; N] = core::array::from_fn(|coordinate| motion.coordinates[coordinate].q[index]);
+        lead(&mut mechanism, *t);
         // Drives that prescribe a rate: their phases take the steps that the motion took.
         match before.replace(*t) {
             None => mechanism.start_phases(&q, *t),

@@ -84,11 +84,16 @@ where
         times: &[f64],
         progress: &mut dyn FnMut(usize),
     ) -> Result<Simulated, Failure> {
-        direct_dynamics::simulate(&self.0, &self.1, approach, times, progress)
+        let mut mechanism = self.0.clone();
+        (self.1.feed)(&mut mechanism, &self.2, times.first().copied().unwrap_or(0.0));
+        direct_dynamics::simulate(&mechanism, &self.1, approach, times, progress)
     }
 
     fn add_forces(&self, motion: &mut Motion) -> Result<(), Failure> {
-        inverse_dynamics::add_forces::<S, I, N, M>(&self.0, motion)
+        let mut mechanism = self.0.clone();
+        let mut lead = |mechanism: &mut S, t| (self.1.feed)(mechanism, &self.2, t);
+        lead(&mut mechanism, motion.time.first().copied().unwrap_or(0.0));
+        inverse_dynamics::add_forces::<S, I, N, M>(mechanism, &mut lead, motion)
     }
 
     fn rest(&self, guesses: &[(usize, f64)]) -> Result<Rest, Failure> {

@@ -73,7 +73,7 @@ function createKeys() {
     Home: () => { play(false); setTime(start); }, End: () => { play(false); setTime(end); },
     l: () => { const names = Object.keys(LOOPS); setLoop(names[(names.indexOf(state.loop) + 1) % names.length]); },
     p: () => flip("show-trace"), v: () => flip("show-velocity"), a: () => flip("show-acceleration"), f: () => flip("show-forces"), n: () => flip("show-labels"),
-    d: () => flip("degrees"), r: resetPlots,
+    d: () => flip("degrees"), r: resetPlots, "[": () => slideBy(-1), "]": () => slideBy(1),
   };
   document.addEventListener("keydown", event => {
     const act = acts[event.key];
@@ -93,6 +93,40 @@ function select(index) {
   if (input) input.checked = true;
   layout();
 }
+
+/** A slider through the range that the text gives a parameter: every stop has motions of its own. */
+function createSlider() {
+  const host = byId("slider"), { slider } = data;
+  host.hidden = !slider || stops.length < 2;
+  if (host.hidden) return { layout() {}, frame() {} };
+  const unit = shownUnit(slider.unit).replace(/^1$/, ""), format = x => significant(x * scaleOf(slider.unit), 5), first = stop;
+  const input = el("input", { type: "range", id: "slide", min: 0, max: stops.length - 1, step: 1, ariaLabel: slider.name, title: "One stop on or back (] and [)" });
+  const value = el("output", { id: "stop", htmlFor: "slide" }), reset = el("button", { type: "button", textContent: "reset" }), reason = byId("reason");
+  const ends = slider.range.map(x => el("span", { className: "hint", textContent: format(x) }));
+  const deviation = slider.tolerance ? ` ± ${format(slider.tolerance)}` : "";
+  const go = index => {
+    const next = stops[clamp(index, 0, stops.length - 1)];
+    input.value = stops.indexOf(next);
+    // A stop without all motions says why; the last ones stay on show, pale.
+    const whole = next.runs.length === first.runs.length;
+    reason.hidden = whole;
+    reason.textContent = whole ? "" : `${slider.name} = ${format(next.value)}${unit && ` ${unit}`}: ${next.reason || "not every motion exists"}`;
+    document.body.classList.toggle("none", !whole);
+    value.textContent = `${format(next.value)}${deviation}${unit && ` ${unit}`}`;
+    if (!whole || next === stop) return;
+    stop = next;
+    runs.splice(0, runs.length, ...next.runs);
+    layout();
+  };
+  input.addEventListener("input", () => go(Number(input.value)));
+  reset.addEventListener("click", () => go(stops.indexOf(first)));
+  slideBy = count => go(Number(input.value) + count);
+  host.append(el("label", {}, el("b", { textContent: slider.name }), value), ends[0], input, ends[1], reset);
+  go(stops.indexOf(first));
+  return { layout() {}, frame() {} };
+}
+
+let slideBy = () => {}; // stops on or back, where there is a slider
 
 function createAssembly() {
   const host = byId("assembly");

@@ -5,10 +5,19 @@ const drawing = data.drawing || [];
 const traces = drawing.filter(item => item.kind === "trace");
 const forcesOf = run => run.dynamics || {};
 const entriesOf = (run, kind) => run[kind] || forcesOf(run)[kind] || [];
-const given = (data.runs || []).filter(run => run.time && run.time.length);
-clean(given);
-const runs = merged(given);
-const [start, end] = extent(runs.map(run => run.time));
+const moving = runs => (runs || []).filter(run => run.time && run.time.length);
+const given = moving(data.runs);
+/** Values of a parameter with the runs of each, where the page has a slider; the page opens with the text's or the command's. */
+const stops = data.slider ? [{ value: data.slider.value, runs: given }, ...data.slider.stops.map(stop => ({ ...stop, runs: moving(stop.runs) }))].sort((a, b) => a.value - b.value)
+  : [{ runs: given }];
+const labels = given.map(run => run.label); // as facts name them
+clean(stops.flatMap(stop => stop.runs));
+for (const stop of stops) stop.runs = merged(stop.runs);
+/** The stop whose runs are on show. */
+let stop = stops.find(({ runs }) => given.some(run => runs.includes(run))) || stops[0];
+const runs = [...stop.runs];
+const everyRun = stops.flatMap(stop => stop.runs);
+const [start, end] = extent(everyRun.map(run => run.time));
 const moves = end > start; // else a position at rest
 /** The run that a page opens with: of several rests the first one that is not unstable. */
 const opening = Math.max(0, runs.findIndex(run => !run.verdict || run.verdict.course !== "unstable"));
@@ -65,6 +74,8 @@ function clean(runs) {
 
 /** Runs on show, the primary one first. */
 const shown = () => state.overlay ? [runs[state.primary], ...runs.filter((_, i) => i !== state.primary)] : [runs[state.primary]];
+/** The same runs at every stop of the slider: what fits them does not change while it slides. */
+const shownAtAllStops = () => stops.length === 1 ? shown() : stops.flatMap(({ runs: others }) => shown().map(run => others[runs.indexOf(run)]).filter(Boolean));
 
 // Series are told apart by colour and dash together: seven colours, each with some of eight dashes.
 const COLOURS = 7;
@@ -95,7 +106,7 @@ const isMonotone = values => values.length > 1 && values[0] !== values[values.le
   && [1, -1].some(sign => values.every((x, k) => finite(x) && (k === 0 || sign * (x - values[k - 1]) > 0)));
 
 /** Angles that rise or fall all the time in every run: a plot may be over them; the most even one first. */
-const turning = moves ? (runs[0].coordinates || []).filter(c => isAngle(c.unit) && runs.every(run => {
+const turning = moves ? (runs[0].coordinates || []).filter(c => isAngle(c.unit) && everyRun.every(run => {
   const found = run.coordinates.find(other => other.name === c.name);
   return found && isMonotone(found.q);
 })).sort((a, b) => unevenness(a) - unevenness(b)).map(c => c.name) : [];
@@ -117,7 +128,7 @@ const angles = new Map();
 /** Abscissae of a run's instants. */
 function abscissae(run) {
   if (!state.over) return run.time;
-  const factor = perRadian(), key = `${runs.indexOf(run)} ${state.over} ${factor}`;
+  const factor = perRadian(), key = `${everyRun.indexOf(run)} ${state.over} ${factor}`;
   if (!angles.has(key)) angles.set(key, run.coordinates.find(c => c.name === state.over).q.map(x => x * factor));
   return angles.get(key);
 }

@@ -50,7 +50,7 @@ const pointsOf = item => [...(item.points || []), ...["at", "of", "rim", "contac
 const coloured = ["link", "plate", "slot", "wheel", "gear", "cam", "face"]; // kinds that take the next colour
 
 /** Runs on show of the large drawing, and what it shows of them. */
-const large = { runs: shown, at: run => sample(run), shows: what => state[what], least: width => Math.min(340, width * .75), axes: true };
+const large = { runs: shown, fitted: shownAtAllStops, at: run => sample(run), shows: what => state[what], least: width => Math.min(340, width * .75), axes: true };
 
 /**
  * A drawing in an SVG element. `options`: { runs: the runs on show, at: the sample of a run, shows: whether "velocity", "acceleration",
@@ -77,7 +77,7 @@ function createStage(root, options) {
   const measures = new Map();
   /** The size that is drawn as a long arrow, of a run by itself or of all that are compared. */
   function measure(key, run) {
-    const id = `${key} ${state.overlay ? "" : runs.indexOf(run)}`;
+    const id = `${stops.indexOf(stop)} ${key} ${state.overlay ? "" : runs.indexOf(run)}`;
     if (!measures.has(id)) measures.set(id, usualSize((state.overlay ? runs : [run]).flatMap(run => arrows[key](run).filter(Boolean).flatMap(sizes))));
     return measures.get(id);
   }
@@ -117,7 +117,7 @@ function createStage(root, options) {
   }
 
   function fit() {
-    const drawn = options.runs();
+    const drawn = (options.fitted || options.runs)();
     const covered = i => run => items.flatMap(item => circles(run, item)).flatMap(([name, radius]) =>
       extent([vector(run, name)[i]]).map((x, end) => end ? x + radius : x - radius));
     const reach = [0, 1].map(i => extent(drawn.flatMap(run => [...[...known].map(name => vector(run, name)[i]), covered(i)(run)])));

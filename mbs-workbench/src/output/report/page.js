@@ -50,17 +50,26 @@ function createValues() {
 
 /** The verdict on every rest in words, before all else; a click shows the rest. */
 function createVerdicts() {
-  const host = byId("verdicts"), judged = runs.filter(run => run.verdict);
-  const lines = judged.map(run => {
+  const host = byId("verdicts");
+  let lines = [];
+  const make = judged => judged.map(run => {
     const { course, text } = run.verdict, dot = svg("svg", { width: 14, height: 14, "aria-hidden": "true" }, svg("circle", { cx: 7, cy: 7, r: 6, style: `fill: ${COURSES[course] || "var(--s6)"}` }));
     const line = el("button", { type: "button", className: "verdict" }, dot, el("span", {}, ...(judged.length > 1 ? [el("b", { textContent: `${run.label}: ` })] : []), unitsIn(text).replace(/(^|[ =])-(?=\d)/g, "$1−")));
     line.dataset.course = course;
     line.addEventListener("click", () => select(runs.indexOf(run)));
-    host.append(line);
     return [run, line];
   });
-  host.hidden = !lines.length;
-  return { layout() { for (const [run, line] of lines) line.setAttribute("aria-pressed", String(runs[state.primary] === run)); }, frame() {} };
+  return {
+    layout() {
+      if (!lines.length || lines[0][0] !== runs.find(run => run.verdict)) {
+        lines = make(runs.filter(run => run.verdict));
+        host.replaceChildren(...lines.map(([, line]) => line));
+        host.hidden = !lines.length;
+      }
+      for (const [run, line] of lines) line.setAttribute("aria-pressed", String(runs[state.primary] === run));
+    },
+    frame() {},
+  };
 }
 
 // ---------------------------------------------------------------- text
@@ -77,7 +86,7 @@ const MOST_COLUMNS = 4; // runs whose facts stand side by side
 
 /** Facts, those of several runs in one line with a column a run. */
 function createFacts() {
-  const table = byId("facts"), labels = given.map(run => run.label), side = labels.length > 1 && labels.length <= MOST_COLUMNS, lines = new Map();
+  const table = byId("facts"), side = labels.length > 1 && labels.length <= MOST_COLUMNS, lines = new Map();
   for (const [name, value] of data.facts || []) {
     const label = side && labels.find(label => name.endsWith(`, ${label}`) && !labels.some(longer => longer !== label && longer.endsWith(`, ${label}`) && name.endsWith(`, ${longer}`)));
     const key = label ? name.slice(0, -label.length - 2) : name;
@@ -133,7 +142,7 @@ if (runs.length) {
   createAssembly();
   createKeys();
   createSave();
-  views.push(createVerdicts(), stage, createTransport(), createShow(), createValues());
+  views.push(createVerdicts(), createSlider(), stage, createTransport(), createShow(), createValues());
   createCamera(byId("stage"), stage);
   createSmall(byId("small"));
   createForces(byId("loads"), "loads");

@@ -34,7 +34,7 @@ function ordinate(panel, arrays, height, own) {
 }
 
 /** Range of the abscissa of all runs on show. */
-const abscissaRange = () => extent(shown().map(abscissae));
+const abscissaRange = () => extent(shownAtAllStops().map(abscissae));
 
 /** Steps of whole parts of a turn, where an axis is in degrees. */
 function degreeTicks(low, high, count) {
@@ -203,7 +203,9 @@ function createPlot(host, panel, group) {
       const placed = ({ time, value }) => time.map((t, k) => [abscissaAt(shown()[0], t), value[k] * factor]).filter(([x]) => x !== null);
       points = (panel.measured ? visible : []).flatMap(({ name, colour }) => panel.measured(name).map(table => ({ colour, places: placed(table) })));
       const inRange = points.map(({ places }) => places.filter(([x]) => inside(x)).map(([, y]) => y));
-      axis = ordinate(panel, [...curves.map(curve => curve.values.filter((_, k) => inside(curve.over[k]))), ...inRange], height, own);
+      // Of all stops of a slider, so that the axis stays while it slides.
+      const all = stops.length === 1 ? curves : visible.flatMap(series => shownAtAllStops().map(run => ({ over: abscissae(run), values: scaled(panel.get(run, series)) }))).filter(curve => curve.values);
+      axis = ordinate(panel, [...all.map(curve => curve.values.filter((_, k) => inside(curve.over[k]))), ...inRange], height, own);
       area.left = Math.max(54, 12 + widest(axis.ticks.map(([, text, power]) => text + (power || ""))));
       const clipped = svg("g", { "clip-path": `url(#${clip})` }, ...curves.map(path).reverse(), ...points.map(measured), dots);
       const window = svg("clipPath", { id: clip }, svg("rect", { x: area.left - 1, y: area.top - 1, width: wide() + 2, height: tall() + 2 }));

@@ -103,6 +103,35 @@ async function saveVideo(root, name, button) {
   setTime(before);
 }
 
+const DELAY = 4, LONGEST_GIF = 12, SAMPLED = 6; // hundredths of a second a picture, seconds, pictures that colours are taken from
+
+/** One pass of the drawing as a GIF, picture by picture: no instant is lost, however slow the machine is. */
+async function saveGif(root, name, button) {
+  if (recording) { recording.ended = true; return; }
+  const before = state.t, label = button.textContent;
+  recording = { ended: false };
+  play(false);
+  const length = clamp((end - start) / state.speed, SHORTEST_VIDEO, LONGEST_GIF), count = Math.round(100 * length / DELAY);
+  const canvas = document.createElement("canvas"), context = canvas.getContext("2d", { willReadFrequently: true });
+  const picture = async share => {
+    setTime(start + share * (end - start));
+    await rasterised(root, 1, canvas);
+    return context.getImageData(0, 0, canvas.width, canvas.height).data;
+  };
+  const sampled = [];
+  for (let k = 0; k < SAMPLED; k++) sampled.push(await picture(k / SAMPLED));
+  const gif = createGif(canvas.width, canvas.height, paletteOf(sampled));
+  for (let k = 0; k < count && !recording.ended; k++) {
+    gif.frame(await picture(k / count), DELAY);
+    button.textContent = `Stop (${Math.round(100 * (k + 1) / count)} %)`;
+    await new Promise(requestAnimationFrame);
+  }
+  saveFile(`${name}.gif`, gif.blob());
+  recording = null;
+  button.textContent = label;
+  setTime(before);
+}
+
 /** Buttons that save a plot with its legend as SVG and PNG. */
 function saveButtons(root, nameOf, legendOf) {
   const button = (text, act) => {
@@ -123,6 +152,7 @@ function createSave() {
   };
   button("SVG", "Save the drawing as SVG", () => saveSvg(stage, name));
   button("PNG", "Save the drawing as PNG", () => savePng(stage, name));
+  if (moves) button("GIF", "Save one pass as an animated GIF", made => saveGif(stage, name, made));
   if (moves) button("WebM", "Save one pass at the chosen speed as a video", made => saveVideo(stage, name, made));
   button("CSV", "Save the values on this page", () => saveFile(`${name}.csv`, new Blob([csv()], { type: "text/csv" })));
 }
