@@ -297,7 +297,10 @@ fn a_command_line_without_sense_has_a_document_too() {
         let output = wiper(&[arguments, &["--json"]].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         let document: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a document");
-        assert_eq!((&document["schema"], &document["error"]["exit_code"]), (&"mbs/usage/1".into(), &2.into()));
+        assert_eq!(
+            (&document["schema"], &document["error"]["exit_code"]),
+            (&"mbs/usage/1".into(), &2.into())
+        );
         let message = document["error"]["message"].as_str().expect("a message");
         assert!(message.contains(part) && !message.starts_with("error"), "{message}");
         assert!(String::from_utf8_lossy(&output.stderr).contains(part));
