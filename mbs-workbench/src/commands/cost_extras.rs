@@ -1,4 +1,4 @@
-//! What `mbs cost` compares beside the settings: tables of functions, and other programs.
+//! Comparisons of `mbs cost` beside the settings: tables of functions, and other programs.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

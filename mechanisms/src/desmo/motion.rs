@@ -19,8 +19,8 @@ pub type Ordinary = DesmoOrdinary<Curve, Curve>;
 pub const FORCES: [&str; 5] =
     ["opener on its cam", "opener on the valve", "seat", "closer on its cam", "fork on the valve"];
 
-/// Largest differences of lift, velocity and acceleration from the law over a turn (m over rad) with permanent contact, and how far the
-/// distance of both rockers varies (m). Compared are 720 places, shifted by this share of their distance.
+/// Largest differences of lift, velocity and acceleration from the law over a turn (m over rad) with permanent contact. The last
+/// number is the range of the distance of both rockers (m). Compared are 720 places, shifted by this share of their distance.
 ///
 /// # Errors
 /// Those of [`Stepper::assemble`] and [`Stepper::advance_to`].

@@ -68,7 +68,7 @@ impl<R: Real> ErrorEstimate<R> {
     }
 }
 
-/// What is left of a geometric series behind two of its differences, the last one `tighter`. A fall that is faster than the largest that
+/// Remainder of a geometric series behind two of its differences, the last one `tighter`. A fall that is faster than the largest that
 /// is trusted may be chance.
 fn left_of<R: Real>(looser: R, tighter: R) -> R {
     let fall = (looser / tighter.max(R::constant(f64::MIN_POSITIVE))).min(R::constant(accuracy::TRUSTED));
