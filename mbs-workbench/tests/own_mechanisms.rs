@@ -11,9 +11,10 @@ use program::{data, failure, scratch, text, wiper};
 #[test]
 fn mechanisms_are_listed_by_the_names_of_their_constructors() {
     let list = text(&["list"]);
-    assert!(list.contains("wiper  Windscreen wiper\n"), "{list}");
+    let names: Vec<Vec<&str>> = list.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert!(names.contains(&vec!["wiper", "Windscreen", "wiper"]), "{list}");
     // A text without a title has the name of the mechanism.
-    assert!(list.contains("cam    Follower\n"), "{list}");
+    assert!(names.contains(&vec!["cam", "Follower"]), "{list}");
 }
 
 #[test]
@@ -187,7 +188,7 @@ fn a_file_is_checked_and_listed_without_a_build() {
     assert!(listed.contains(&format!("{file}:Follower  Follower\n")), "{listed}");
     let checked = text(&["check", &file]);
     assert!(checked.contains("warning: `closure` has two positions of `phi`, `psi`"), "{checked}");
-    assert!(checked.ends_with("3 texts without faults, 1 warning\n"), "{checked}");
+    assert!(checked.ends_with("4 texts without faults, 1 warning\n"), "{checked}");
 
     let bare = scratch("warned.mbs");
     let write = |rows: &str| fs::write(&bare, rows).expect("a file");
