@@ -324,7 +324,8 @@ impl Coarser {
         let before = self.difference.replace(error);
         self.runs.push(run);
         let of_three = before.zip(self.runs.last_chunk::<3>()).map(|(before, last)| {
-            let steps = last.each_ref().map(|(_, steps)| u32::try_from(*steps).unwrap_or(u32::MAX));
+            // Rejected steps make an error look too large; here one that looks too small would count.
+            let steps = last.each_ref().map(|(_, steps)| [u32::try_from(*steps).unwrap_or(u32::MAX), 0]);
             ErrorEstimate::of([before, error], steps).trusted().is_some()
         });
         if self.runs.len() > 2 {

@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 
 use mbs_runtime::dynamics::{
-    DormandPrince8, Embedded, ErrorEstimate, Explicit, Projection, Simulation, Tolerance,
+    DormandPrince5, DormandPrince8, Embedded, ErrorEstimate, Explicit, Projection, Simulation, Tolerance,
 };
 use mbs_runtime::{Dynamic, mechanism};
 
@@ -195,6 +195,7 @@ fn estimates_are_trusted_within_their_bounds_alone() {
         ($name:literal, $mechanism:expr, $until:expr) => {{
             let mechanism = $mechanism;
             checked($name, (&mechanism, $until, DormandPrince8), 1e-13, &TOLERANCES, &mut all);
+            checked($name, (&mechanism, $until, DormandPrince5), 1e-12, &TOLERANCES, &mut all);
         }};
     }
     check!("pendulum", Cartesian::<f64>::default(), 3.0);
@@ -204,7 +205,7 @@ fn estimates_are_trusted_within_their_bounds_alone() {
     check!("block", Block::<f64>::default(), 1.5);
     let [trusted, count] = all;
     println!("{trusted} of {count} are trusted");
-    assert!(3 * trusted > count, "{trusted} of {count} are trusted");
+    assert!(2 * trusted > count, "{trusted} of {count} are trusted");
 }
 
 #[test]

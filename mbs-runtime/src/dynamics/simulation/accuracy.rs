@@ -36,16 +36,19 @@ pub enum ErrorEstimate<R> {
 
 impl<R: Real> ErrorEstimate<R> {
     /// That of the finest of three runs, each of a tenth of the tolerance of the one before. `looser` is the largest difference of the
-    /// first two, `tighter` of the last two. `steps` are those of all three.
+    /// first two, `tighter` of the last two. `steps` are those of all three, accepted and rejected.
     ///
     /// It is what is left of a geometric series: `tighter` over the fall of the differences less 1. A fall counts up to 4, as a faster one may
-    /// be chance. It is trusted where the steps differ enough to tell an error, and where the differences fall as errors of an order do;
-    /// else it is `tighter`.
-    pub fn of([looser, tighter]: [R; 2], steps: [u32; 3]) -> Self {
-        let finer = |pair: &[u32]| matches!(pair, [few, many] if is_more(*few, *many));
+    /// be chance. It is trusted where the steps differ enough to tell an error, few of them are rejected, and the differences fall; else it
+    /// is `tighter`.
+    pub fn of([looser, tighter]: [R; 2], steps: [[u32; 2]; 3]) -> Self {
+        let finer = |pair: &[[u32; 2]]| matches!(pair, [[few, _], [many, _]] if is_more(*few, *many));
+        let smooth = |[accepted, rejected]: &[u32; 2]| {
+            f64::from(*rejected) <= accuracy::REJECTED * f64::from(*accepted)
+        };
         let [least, most] = accuracy::FALLS.map(R::constant);
         let falls = least * tighter <= looser && looser <= most * tighter;
-        if falls && steps.windows(2).all(finer) {
+        if falls && steps.windows(2).all(finer) && steps.iter().all(smooth) {
             ErrorEstimate::Trusted(left_of(looser, tighter))
         } else {
             ErrorEstimate::Untrusted(tighter)
@@ -277,7 +280,8 @@ where
         match &self.coarser {
             None => ErrorEstimate::Untrusted(local),
             Some([coarsest, coarse]) => {
-                let steps = [coarsest, coarse, &self.fine].map(|run| run.adaptive.accepted);
+                let runs = [coarsest, coarse, &self.fine].map(|run| &run.adaptive);
+                let steps = runs.map(|steps| [steps.accepted, steps.rejected]);
                 match ErrorEstimate::of(self.differences, steps) {
                     ErrorEstimate::Untrusted(value) => ErrorEstimate::Untrusted(value.max(local)),
                     trusted => trusted,

@@ -69,7 +69,8 @@ fn estimated_error(
     let (Some(coarsest), Some(coarse)) = (coarser(100.0), coarser(10.0)) else {
         return Some([name, "not known: runs of coarser tolerances do not go through".to_string()]);
     };
-    let steps = [&coarsest, &coarse, found].map(|run| u32::try_from(run.counts.steps).unwrap_or(u32::MAX));
+    let accepted = |steps: u64| u32::try_from(steps).unwrap_or(u32::MAX);
+    let steps = [&coarsest, &coarse, found].map(|run| [accepted(run.counts.steps), run.rejected]);
     let mut errors: Vec<(&str, [f64; 2])> = Vec::new();
     let coordinates = found.motion.coordinates.iter().zip(&coarse.motion.coordinates);
     for ((fine, coarse), coarsest) in coordinates.zip(&coarsest.motion.coordinates) {
