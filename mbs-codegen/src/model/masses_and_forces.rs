@@ -18,6 +18,7 @@ use super::value::{Fault, Quantity, Reach, Value};
 use super::written::written;
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Element, Energy, Expression, Field, Joined, Load, Name, Statement, StatementKind};
+use crate::syntax::meant_field;
 
 /// `true` if the statement is one of masses or forces, so that the text is one of dynamics.
 pub fn is_dynamic(statement: &Statement) -> bool {
@@ -203,7 +204,9 @@ impl Resolver<'_> {
                 let names: Vec<&str> = known.iter().map(|(known, ..)| *known).collect();
                 let begins = |name: &&str| field.name.text.len() > 2 && name.starts_with(&field.name.text);
                 let near = nearest(&field.name.text, names.iter().copied());
-                let meant = near.or_else(|| names.iter().copied().find(|name| begins(name)));
+                let meant = meant_field(&field.name.text, &names)
+                    .or(near)
+                    .or_else(|| names.iter().copied().find(|name| begins(name)));
                 misspelled.extend(meant);
                 let help = match meant.filter(|meant| !is_given(meant)) {
                     Some(meant) => format!("did you mean `{meant}`?"),

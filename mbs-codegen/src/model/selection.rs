@@ -139,11 +139,27 @@ impl<'a> Effects<'a> {
                 };
                 let near = nearest(&name.text, self.declared.keys().copied());
                 let meant = near.or_else(|| self.declared.keys().copied().find(begins));
-                let help = match meant {
-                    Some(meant) => format!("did you mean `{meant}`?"),
-                    None => format!("declare it: `effect {} {{ … }}`", name.text),
+                let is_statement = |(effect, statement): &(Option<usize>, &Statement)| {
+                    effect.is_none()
+                        && statement.kind.declared().is_some_and(|(_, known)| known.text == name.text)
                 };
-                diagnostics.report(name.span, format!("unknown effect `{}`", name.text), help);
+                let (message, help) = match meant {
+                    _ if self.parts.iter().any(is_statement) => (
+                        format!("`{}` is no effect: all scenes have it", name.text),
+                        format!(
+                            "leave it out, or write its statement in an `effect {}_effect {{ … }}`",
+                            name.text
+                        ),
+                    ),
+                    Some(meant) => {
+                        (format!("unknown effect `{}`", name.text), format!("did you mean `{meant}`?"))
+                    }
+                    None => {
+                        let help = format!("declare it: `effect {} {{ … }}`", name.text);
+                        (format!("unknown effect `{}`", name.text), help)
+                    }
+                };
+                diagnostics.report(name.span, message, help);
                 // The scene is read as with the effect that is meant; without one its other faults only follow.
                 is_whole &= meant.is_some();
                 let meant = meant.and_then(|meant| self.declared.get(meant)).into_iter().flatten();

@@ -148,6 +148,12 @@ impl Declarations<'_> {
                 _ => None,
             }
         });
+        // Radians a turn times the time: the law of an angle, where its rate is prescribed.
+        if let (Some((value, at)), Place::Rate, true) = (bare, &fault.place, found.iter().any(is_pi)) {
+            let rate = with_name(&fault.operand, at, &with_unit(value, &fault.wanted.text()));
+            let rest = without(&rate, &found, time)?;
+            return Some((span, format!("the speed stands without the time: `{rest}`")));
+        }
         if let (Some((value, at)), false) =
             (bare, found.iter().any(is_pi) || ratio.dimension == Dimension::NUMBER)
             && !matches!(&fault.place, Place::Argument(_) if !fault.wanted.is_angle)
@@ -278,18 +284,20 @@ fn is_sum(code: &[Instruction]) -> bool {
 
 /// The expression with another text for the number or name at `span`.
 fn replaced(code: &[Instruction], span: Span, text: &str) -> String {
+    written(&with_name(code, span, text))
+}
+
+/// The expression with `text` as a name in place of the number or name at a place.
+fn with_name(code: &[Instruction], span: Span, text: &str) -> Vec<Instruction> {
     let at =
         |other: Span| (other.start().line, other.start().column) == (span.start().line, span.start().column);
-    let code: Vec<Instruction> = code
-        .iter()
-        .map(|instruction| match &instruction.operation {
-            Operation::Number { .. } | Operation::Name(_) if at(instruction.span) => {
-                Instruction { operation: Operation::Name(text.to_owned()), span: instruction.span }
-            }
-            _ => instruction.clone(),
-        })
-        .collect();
-    written(&code)
+    let named = |instruction: &Instruction| match &instruction.operation {
+        Operation::Number { .. } | Operation::Name(_) if at(instruction.span) => {
+            Instruction { operation: Operation::Name(text.to_owned()), span: instruction.span }
+        }
+        _ => instruction.clone(),
+    };
+    code.iter().map(named).collect()
 }
 
 /// The product without one of its factors; `None` where it has no other one.

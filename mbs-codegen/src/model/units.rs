@@ -7,7 +7,7 @@ use proc_macro2::Span;
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::NUMBER_TYPES;
 use crate::syntax::ast;
-use crate::syntax::unit_symbols::{SUFFIXES, SYMBOLS, in_si, is_symbol, meant};
+use crate::syntax::unit_symbols::{SUFFIXES, SYMBOLS, in_si, is_symbol, meant, of_quantity};
 
 /// Exponents of the base units, in sixtieths, so that roots up to the sixth are exact.
 ///
@@ -165,6 +165,9 @@ fn unknown_unit(symbol: &str) -> (String, String) {
             format!("`{symbol}` is a type of numbers, no unit"),
             "write the unit, such as `m` or `rad/s`; `1` where there is none".into(),
         );
+    }
+    if let Some(unit) = of_quantity(symbol) {
+        return (format!("`{symbol}` is a quantity, no unit"), format!("write its unit: `{unit}`"));
     }
     let near = || nearest(symbol, SYMBOLS.iter().map(|(known, _)| *known)).map(str::to_owned);
     let help = match meant(symbol).or_else(near) {

@@ -6,6 +6,7 @@ use super::ast::{
 use super::constraint::equation;
 use super::expression::expression;
 use super::foreign;
+use super::foreign_words;
 use super::parser::{Parser, Read};
 use super::statement_end::end;
 use super::unit::declared_type;
@@ -43,17 +44,20 @@ pub fn read_contact(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 /// `name { field: value, … }`
 fn element(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<StatementKind> {
-    let (name, fields) = parser.declare(Declares::Element, help, |parser, _| read_fields(parser, help))?;
+    let (name, fields) =
+        parser.declare(Declares::Element, help, |parser, _| read_fields(parser, kind, help))?;
     Ok(StatementKind::Element { kind, name, fields })
 }
 
 /// `{ field: value, … }`
-fn read_fields(parser: &mut Parser<'_>, help: &str) -> Read<Vec<Field>> {
-    parser.expect('{', help)?;
+fn read_fields(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<Vec<Field>> {
+    if !parser.take('{') {
+        return foreign_words::before_fields(parser, kind, help);
+    }
     let mut fields = Vec::new();
     while !parser.take('}') {
         let field = parser.name(help)?;
-        parser.expect(':', help)?;
+        foreign_words::colon(parser, &field.text, help)?;
         let value = expression(parser)?;
         fields.push(Field { name: field, value, of: of_body(parser, help)? });
         if !parser.take(',') {

@@ -4,6 +4,7 @@ use proc_macro2::Span;
 
 use super::ast::{Expression, Instruction, Name, Operation, Operator};
 use super::foreign;
+use super::foreign_words;
 use super::missing::{self, Around};
 use super::number::number;
 use super::parser::{Parser, Read};
@@ -83,7 +84,11 @@ impl Reader {
         if foreign::at_condition(parser) {
             return foreign::condition(parser);
         }
+        if let Some(reported) = foreign_words::derivative(parser) {
+            return reported;
+        }
         match parser.peek() {
+            TokenKind::Punctuation('|', _) => foreign_words::bars(parser),
             TokenKind::Punctuation('-', _) => {
                 parser.skip(1);
                 self.pending.push(Pending::Negate(span));
@@ -136,6 +141,11 @@ impl Reader {
                 Ok(false)
             }
             _ => {
+                if *parser.peek() == TokenKind::Open('{')
+                    && let Some(reported) = foreign_words::braces(parser)
+                {
+                    return reported;
+                }
                 parser.expected("an expression", "write a number, a name, a function call, `[x, y]` or `(…)`")
             }
         }
@@ -190,6 +200,10 @@ impl Reader {
                     | Some(Pending::Array { length: count, .. })
                     | Some(Pending::Index { indices: count, .. }) => *count += 1,
                     None => return Ok(None),
+                    Some(bracket @ Pending::Parenthesis) => {
+                        foreign_words::parentheses(parser);
+                        *bracket = Pending::Array { length: 2, span };
+                    }
                     Some(_) => return parser.expected("`)`", "close the parenthesis, or remove the comma"),
                 }
                 parser.skip(1);

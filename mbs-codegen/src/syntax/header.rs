@@ -104,7 +104,13 @@ fn header(
     if keyword != "mechanism" {
         return Err(syn::Error::new(keyword.span(), format!("expected `mechanism`, found `{keyword}`")));
     }
-    let nameless = |fault: syn::Error| syn::Error::new(fault.span(), "expected identifier");
+    let quoted = input.fork().parse::<syn::LitStr>().ok();
+    let nameless = |fault: syn::Error| match &quoted {
+        Some(name) => {
+            syn::Error::new(fault.span(), format!("its name `{}` stands without quotes", name.value()))
+        }
+        None => syn::Error::new(fault.span(), "expected identifier"),
+    };
     let name: Ident = input.call(Ident::parse_any).map_err(nameless)?;
     let name = identifier(&name.unraw().to_string(), name.span());
     let end: syn::Result<Token![;]> = input.parse();

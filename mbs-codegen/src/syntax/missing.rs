@@ -7,7 +7,7 @@ use super::foreign::CALLED;
 use super::number_notations;
 use super::parser::{GivenUp, Parser, Read};
 use super::picture;
-use super::quotation::{operand_before, operand_behind, quoted, until_end};
+use super::quotation::{operand_before, operand_behind, quoted, until_end, up_to_comma};
 use super::statement_end::at_statement;
 use super::tokens::{Token, TokenKind};
 use super::unit_symbols::coherent_unit;
@@ -159,11 +159,7 @@ pub fn names_to_end(parser: &Parser<'_>) -> Vec<(String, Span)> {
 pub fn no_unit<T>(parser: &mut Parser<'_>, word: &str, name: &str) -> Read<T> {
     let span = parser.span();
     let rest = parser.rest().get(1..).unwrap_or_default();
-    let length = rest
-        .iter()
-        .take_while(|token| !matches!(token.kind, TokenKind::Punctuation(';' | ',', _) | TokenKind::End))
-        .count();
-    let value = rest.get(..length).unwrap_or_default();
+    let value = up_to_comma(rest);
     let unit = match value {
         [Token { kind: TokenKind::Literal(text), .. }] => {
             let suffix = text.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | '_'));
@@ -171,13 +167,15 @@ pub fn no_unit<T>(parser: &mut Parser<'_>, word: &str, name: &str) -> Read<T> {
         }
         _ => None,
     };
+    let guess = unit.map_or("; in place of `1` stands its unit, such as `m` or `rad`", |_| "");
     let unit = unit.unwrap_or("1");
-    let is_last = !matches!(rest.get(length).map(|token| &token.kind), Some(TokenKind::Punctuation(',', _)));
+    let is_last =
+        !matches!(rest.get(value.len()).map(|token| &token.kind), Some(TokenKind::Punctuation(',', _)));
     let others = if is_last { "" } else { ", and each further one in a statement of its own" };
     parser.diagnostics.report(
         span,
         format!("`{name}` has no unit"),
-        format!("write `{word} {name}: {unit} = {};`{others}", quoted(value)),
+        format!("write `{word} {name}: {unit} = {};`{guess}{others}", quoted(value)),
     );
     Err(GivenUp)
 }

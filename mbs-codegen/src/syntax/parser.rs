@@ -28,6 +28,8 @@ pub struct Parser<'a> {
     pub faulty: Vec<StatementKind>,
     /// Names behind the word `function`.
     functions: BTreeSet<&'a str>,
+    /// Names behind words that begin a statement.
+    declared: BTreeSet<&'a str>,
 }
 
 static BEHIND: TokenKind = TokenKind::End;
@@ -35,14 +37,24 @@ static BEHIND: TokenKind = TokenKind::End;
 impl<'a> Parser<'a> {
     /// `tokens` end with [`Kind::End`].
     pub fn new(tokens: &'a [Token], diagnostics: &'a mut Diagnostics) -> Self {
-        let pairs = tokens.iter().zip(tokens.iter().skip(1));
-        let functions = pairs.filter_map(|(word, name)| match (&word.kind, &name.kind) {
-            (TokenKind::Identifier(word), TokenKind::Identifier(name)) if word == "function" => {
-                Some(name.as_str())
-            }
-            _ => None,
-        });
-        Parser { tokens, next: 0, diagnostics, faulty: Vec::new(), functions: functions.collect() }
+        let behind = |is_word: fn(&str) -> bool| {
+            let pairs = tokens.iter().zip(tokens.iter().skip(1));
+            let names = pairs.filter_map(move |(word, name)| match (&word.kind, &name.kind) {
+                (TokenKind::Identifier(word), TokenKind::Identifier(name)) if is_word(word) => {
+                    Some(name.as_str())
+                }
+                _ => None,
+            });
+            names.collect()
+        };
+        let functions = behind(|word| word == "function");
+        let declared = behind(|word| STATEMENTS.contains(&word));
+        Parser { tokens, next: 0, diagnostics, faulty: Vec::new(), functions, declared }
+    }
+
+    /// `true` if a statement declares this name, as far as the words before names tell.
+    pub fn declares(&self, name: &str) -> bool {
+        self.declared.contains(name)
     }
 
     /// `true` if the text declares a function of this name.

@@ -96,24 +96,35 @@ pub fn quoted(tokens: &[Token]) -> String {
     if text.chars().count() > LONGEST { "…".into() } else { text }
 }
 
-/// Tokens up to the end of the statement, outside of brackets.
-pub fn until_end<'a>(parser: &Parser<'a>) -> &'a [Token] {
-    let rest = parser.rest();
+/// Tokens up to a comma or `;` outside of brackets, or the bracket that closes around them.
+pub fn up_to_comma(tokens: &[Token]) -> &[Token] {
+    up_to(tokens, |mark| matches!(mark, ',' | ';'))
+}
+
+/// Tokens up to the bracket that closes around them.
+pub fn inside(tokens: &[Token]) -> &[Token] {
+    up_to(tokens, |_| false)
+}
+
+/// Tokens up to a mark outside of brackets, or the bracket that closes around them.
+fn up_to(tokens: &[Token], is_end: impl Fn(char) -> bool) -> &[Token] {
     let mut depth = 0_usize;
-    let inside = rest.iter().take_while(|token| match token.kind {
-        TokenKind::End => false,
-        TokenKind::Punctuation(';', _) if depth == 0 => false,
-        TokenKind::Open(_) => {
-            depth += 1;
-            true
+    let inside = tokens.iter().take_while(|token| {
+        match token.kind {
+            TokenKind::End => return false,
+            TokenKind::Punctuation(mark, _) if depth == 0 && is_end(mark) => return false,
+            TokenKind::Open(_) => depth += 1,
+            TokenKind::Close(_) if depth == 0 => return false,
+            TokenKind::Close(_) => depth -= 1,
+            _ => {}
         }
-        TokenKind::Close(_) => {
-            let inside = depth > 0;
-            depth = depth.saturating_sub(1);
-            inside
-        }
-        _ => true,
+        true
     });
     let length = inside.count();
-    rest.get(..length).unwrap_or_default()
+    tokens.get(..length).unwrap_or_default()
+}
+
+/// Tokens up to the end of the statement, outside of brackets.
+pub fn until_end<'a>(parser: &Parser<'a>) -> &'a [Token] {
+    up_to(parser.rest(), |mark| mark == ';')
 }

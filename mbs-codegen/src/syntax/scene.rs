@@ -56,7 +56,15 @@ pub fn read_scene(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 /// Reads the effects after the `=`; returns `true` if braces follow, which are then open.
 fn read_effects(parser: &mut Parser<'_>, scene: &str, effects: &mut Vec<Name>) -> Read<bool> {
-    if !foreign::takes_value(parser) {
+    let is_colon = !parser.at_pair(':', '=') && matches!(parser.peek(), TokenKind::Punctuation(':', _));
+    if is_colon {
+        parser.diagnostics.report(
+            parser.span(),
+            "a scene has `=` behind its name",
+            format!("write `scene {scene} = …;`"),
+        );
+        parser.skip(1);
+    } else if !foreign::takes_value(parser) {
         return parser.expected("`=`", SCENE);
     }
     if !matches!(parser.peek(), TokenKind::Open('[' | '(')) {

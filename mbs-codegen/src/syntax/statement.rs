@@ -9,7 +9,9 @@ use super::dynamics;
 use super::expression::expression;
 use super::for_loop::read_loop;
 use super::foreign;
+use super::foreign_words;
 use super::keywords::{LATER, STATEMENTS};
+use super::missing;
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::picture;
 use super::quotation::until_end;
@@ -160,10 +162,13 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
         parser.skip(1);
         return Err(GivenUp);
     }
-    let meant = nearest(word, STATEMENTS.into_iter().chain(picture::PICTURES));
-    let help = match meant {
-        Some(known) => format!("did you mean `{known}`?"),
-        None => known(),
+    let cure = foreign_words::one_of_two(word);
+    let near = || nearest(word, STATEMENTS.into_iter().chain(picture::PICTURES)).filter(|_| cure.is_none());
+    let meant = foreign_words::meant(word).or_else(near);
+    let help = match (meant, cure) {
+        (Some(known), _) => format!("did you mean `{known}`?"),
+        (None, Some(cure)) => cure.into(),
+        (None, None) => known(),
     };
     parser.diagnostics.report(span, format!("`{word}` begins no statement"), help);
     parser.skip(1);
@@ -238,6 +243,9 @@ fn reader(word: &str) -> Option<Reader> {
 const OUT: &str = "write `out angle: rad = phi3 - phi2;`";
 fn read_out(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(OUT)?;
+    if matches!(parser.peek(), TokenKind::Punctuation('=', false)) {
+        return missing::no_unit(parser, "out", &name.text);
+    }
     parser.expect(':', OUT)?;
     let kind = declared_type(parser, OUT)?;
     if !foreign::takes_value(parser) {

@@ -150,6 +150,36 @@ const OTHER_NAMES: [(&str, &str); 41] = [
     ("watt", "W"),
 ];
 
+/// Quantities by name, and their units.
+const QUANTITIES: [(&str, &str); 20] = [
+    ("length", "m"),
+    ("distance", "m"),
+    ("angle", "rad"),
+    ("time", "s"),
+    ("mass", "kg"),
+    ("speed", "m/s"),
+    ("velocity", "m/s"),
+    ("acceleration", "m/s^2"),
+    ("angular_velocity", "rad/s"),
+    ("angular_speed", "rad/s"),
+    ("force", "N"),
+    ("torque", "N*m"),
+    ("moment", "N*m"),
+    ("inertia", "kg*m^2"),
+    ("stiffness", "N/m"),
+    ("damping", "N*s/m"),
+    ("energy", "J"),
+    ("power", "W"),
+    ("pressure", "Pa"),
+    ("number", "1"),
+];
+
+/// The unit of a quantity that is named in place of its unit.
+pub fn of_quantity(word: &str) -> Option<&'static str> {
+    let lower = word.to_lowercase();
+    QUANTITIES.iter().find(|(quantity, _)| *quantity == lower).map(|(_, unit)| *unit)
+}
+
 /// The symbol that a unit by another name means.
 pub fn foreign_name(word: &str) -> Option<&'static str> {
     let lower = word.to_lowercase();

@@ -26,13 +26,14 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     }
     let found = checked(&arguments.file)?;
     out.put("file", &arguments.file);
-    out.put("texts", found.texts);
+    out.put("texts", found.texts.len());
+    out.put("hashes", &found.texts);
     out.put("faults", found.faults.iter().map(fault).collect::<Vec<_>>());
     out.put("warnings", found.warnings.iter().map(fault).collect::<Vec<_>>());
     if let Some(error) = found.error() {
         return Err(error.into());
     }
-    let (texts, warnings) = (found.texts, found.shown_warnings());
+    let (texts, warnings) = (found.texts.len(), found.shown_warnings());
     for warning in &warnings {
         writeln!(out, "{warning}")?;
     }

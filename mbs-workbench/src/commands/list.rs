@@ -56,7 +56,7 @@ fn of_file(file: &str, out: &mut Output) -> Result<(), CommandError> {
         let message = format!("`{file}` is no file; `mbs list` alone prints the mechanisms of the list");
         return Err(CommandError::Usage(message));
     }
-    for Listed { argument, title, variables } in listed(file)? {
+    for Listed { argument, title, variables, hash } in listed(file)? {
         writeln!(out, "{argument}  {title}")?;
         let described = variables.iter().map(|variable| {
             let Variable { name, unit, default, range, tolerance, is_input } = variable;
@@ -65,7 +65,10 @@ fn of_file(file: &str, out: &mut Output) -> Result<(), CommandError> {
             })
         });
         let described: Vec<_> = described.collect();
-        out.push("mechanisms", json!({ "name": argument, "title": title, "variables": described }));
+        out.push(
+            "mechanisms",
+            json!({ "name": argument, "title": title, "hash": hash, "variables": described }),
+        );
         let parameters = variables.iter().map(|variable| {
             let [low, high] = variable.range.map(short);
             let range =

@@ -9,6 +9,8 @@ use std::fs;
 pub use self::argument::{Argument, is_file};
 use mbs_codegen::{Call, Fault, Outline};
 
+use crate::hash::hash_of_text;
+
 /// A mechanism's text in a file, without faults, in a scene.
 #[derive(Clone, Debug)]
 pub struct TextFile {
@@ -114,8 +116,8 @@ impl TextFile {
 
 /// Faults and warnings of the texts in a file.
 pub struct Checked {
-    /// Number of texts.
-    pub texts: usize,
+    /// Hashes of the texts.
+    pub texts: Vec<String>,
     /// Faults of all texts.
     pub faults: Vec<Fault>,
     /// Warnings about texts without faults.
@@ -156,7 +158,8 @@ pub fn checked(argument: &str) -> Result<Checked, TextFileError> {
             warnings.push(repeated(call, first.line));
         }
     }
-    Ok(Checked { texts: calls.len(), faults, warnings, path, content })
+    let texts = calls.iter().map(|call| hash_of_text(&call.source)).collect();
+    Ok(Checked { texts, faults, warnings, path, content })
 }
 
 /// Warning about a second text of one name.
@@ -187,6 +190,8 @@ pub struct Listed {
     pub title: String,
     /// Its parameters and inputs.
     pub variables: Vec<mbs_codegen::Variable>,
+    /// Hash of its text.
+    pub hash: String,
 }
 
 /// All mechanisms and scenes in the file of an argument.
@@ -207,6 +212,7 @@ pub fn listed(argument: &str) -> Result<Vec<Listed>, TextFileError> {
                 argument,
                 title: title.map_err(TextFileError::Faults)?,
                 variables: variables.map_err(TextFileError::Faults)?,
+                hash: hash_of_text(&call.source),
             });
         }
     }
@@ -401,7 +407,7 @@ mod tests {
         }
         let twice = "mechanism! { pub mechanism A; coord x: m; drive d: x == 1 [m/s]*t; }\n";
         let twice = checked(&file("twice.rs", &twice.repeat(2))).expect("two texts");
-        assert_eq!((twice.texts, twice.faults.len(), twice.warnings.len()), (2, 0, 1));
+        assert_eq!((twice.texts.len(), twice.faults.len(), twice.warnings.len()), (2, 0, 1));
         let Fault { line, column, message, .. } = &twice.warnings[0];
         assert_eq!(
             (*line, *column, message.as_str()),
