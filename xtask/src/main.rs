@@ -17,7 +17,7 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 cargo xtask TASK
 
-ci                       what a change must pass: format, lints, documents, tests, counts of instructions
+ci                       what a change must pass: format, lints, documents, tests, counts of instructions, hard cases
 full                     `ci`, tests with `long`, reports in a browser, the book, packages, growth, lines, costs, hard cases, planted faults, fuzzing,
                          Rust 1.89 where it is installed
 bench [OPTIONS]          kinematics, dynamics and linkages against their peers; `--docs` writes the tables of the book

@@ -143,7 +143,7 @@ fn wrong(copy: &Path, cases: &str, out: &Path) -> Result<usize, String> {
     let out = out.display().to_string();
     let mut study =
         command("cargo", &["run", "--quiet", "--release", "-p", "mbs-workbench", "--bin", "mbs", "--"]);
-    study.args(["hard-cases", "--quick", "--cases", cases, "--out", &out]);
+    study.args(["hard-cases", "--quick", "--variants", "8", "--cases", cases, "--out", &out]);
     study.current_dir(copy).env("CARGO_TARGET_DIR", target().join("planted").join("target"));
     let status = study.stdout(std::process::Stdio::null()).status().map_err(|error| error.to_string())?;
     let table = fs::read_to_string(&table)

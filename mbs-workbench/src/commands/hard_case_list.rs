@@ -72,7 +72,8 @@ pub fn study(arguments: &Arguments, listed: &[Listed], out: &mut Output) -> Resu
     let seeds: Vec<u64> = arguments.replay.map_or_else(|| (0..variants).collect(), |seed| vec![seed]);
     let style = ProgressStyle::with_template("{bar:30} {percent}% {msg}").expect("a valid template");
     let bar = ProgressBar::new(1000 * cases.len() as u64).with_style(style);
-    let work = Work { listed, methods: &methods, seeds: &seeds, bar: &bar };
+    let in_turn = arguments.quick && arguments.variants.is_none() && arguments.replay.is_none();
+    let work = Work { listed, methods: &methods, seeds: &seeds, in_turn, bar: &bar };
     let (mut outcomes, mut left_out) = (Vec::new(), Vec::new());
     for found in work.all(&cases) {
         let found = found?;
@@ -99,7 +100,10 @@ pub fn study(arguments: &Arguments, listed: &[Listed], out: &mut Output) -> Resu
     result.left_out = left_out;
     result.facts = [
         ("cases", cases.len().to_string()),
-        ("variants", format!("{} of each case, each from its seed", seeds.len())),
+        ("variants", {
+            let by = if in_turn { ", one by each method" } else { "" };
+            format!("{} of each case, each from its seed{by}", seeds.len())
+        }),
         ("bounds", "stored with each case before the run".to_string()),
         ("elimination", result.elimination()),
         ("machine", machine()),
@@ -131,6 +135,8 @@ struct Work<'a> {
     listed: &'a [Listed],
     methods: &'a [MotionMethod],
     seeds: &'a [u64],
+    /// Each method runs one of the variants.
+    in_turn: bool,
     bar: &'a ProgressBar,
 }
 
@@ -143,7 +149,7 @@ impl Work<'_> {
             let mut found = Vec::new();
             while let Some((index, case)) = cases.iter().enumerate().nth(next.fetch_add(1, Ordering::Relaxed))
             {
-                found.push((index, self.one(case)));
+                found.push((index, self.one(index, case)));
             }
             found
         };
@@ -156,8 +162,8 @@ impl Work<'_> {
         found.into_iter().map(|(_, found)| found).collect()
     }
 
-    /// A case by all methods.
-    fn one(&self, case: &Case) -> Result<Found, CommandError> {
+    /// The case of an index by all methods.
+    fn one(&self, index: usize, case: &Case) -> Result<Found, CommandError> {
         let description = &case.description;
         let Some((_, card, make)) = self.listed.iter().find(|(name, ..)| *name == case.name) else {
             return Err(CommandError::Failed(format!("this program was built without `{}`", case.name)));
@@ -178,6 +184,7 @@ impl Work<'_> {
         let extent = Extent {
             methods: self.methods.to_vec(),
             seeds: self.seeds.to_vec(),
+            in_turn: self.in_turn.then_some(index),
             until,
             description: Some(description.clone()),
         };

@@ -44,10 +44,10 @@ pub struct Arguments {
     /// Methods of a motion from forces, by parts of their names: `projection`, `radau5` [default: all]
     #[arg(long, value_name = "METHOD", value_delimiter = ',')]
     pub(super) methods: Vec<String>,
-    /// Number of variants [default: 100; of the built-in list with `--quick` 8]
+    /// Number of variants [default: 100]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) variants: Option<u64>,
-    /// Six methods, and at most 45 s of computation; the built-in list in 8 variants of each case
+    /// Six methods, and at most 45 s of computation; of the built-in list each method runs one of 8 kinds of variants, in turn
     #[arg(long)]
     pub(super) quick: bool,
     /// Run the one variant with this seed, and print each verdict with its figures
@@ -138,7 +138,7 @@ pub fn study(
         Some(seed) => vec![seed],
         None => (0..arguments.variants.unwrap_or(VARIANTS)).collect(),
     };
-    let extent = Extent { methods, seeds, until, description: None };
+    let extent = Extent { methods, seeds, until, in_turn: None, description: None };
     let allowed = if arguments.quick { QUICK } else { WHOLE };
     let style = ProgressStyle::with_template("{bar:30} {percent}% {msg}").expect("a valid template");
     let bar = ProgressBar::new(1000).with_style(style);

@@ -241,3 +241,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
         self.mechanism.normal_forces(parameters, position, qd, states, see)
     }
 }
+
+#[cfg(test)]
+#[path = "fed_tests.rs"]
+mod tests;

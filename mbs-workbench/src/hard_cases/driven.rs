@@ -48,7 +48,7 @@ pub fn driven_outcomes(
         if variation.class == Class::Similar {
             let Some((own, _)) = make(&[]) else { continue };
             let pair = [own.as_ref(), mechanism.as_ref()];
-            outcomes.extend(similar_outcomes(pair, &variation, subject, extent));
+            outcomes.extend(similar_outcomes(pair, &variation, subject, (extent, index)));
             continue;
         }
         let Some(runs) = mechanism.runs(numbers, lanes, &variation.shift) else { continue };
@@ -57,7 +57,7 @@ pub fn driven_outcomes(
         let fine = positions(fine.as_ref(), Closing::Closed, extent.until, FINER * steps);
         let suits =
             |closing: &Closing| (lanes == 1 || *closing == Closing::Closed) && extent.has(kind(*closing));
-        for closing in CLOSINGS.iter().filter(|closing| suits(closing)) {
+        for closing in closings(extent, index).filter(|closing| suits(closing)) {
             let run = positions(runs.as_ref(), *closing, extent.until, steps);
             let method = if lanes == 1 { format!("Stepper, {closing}") } else { format!("Batch of {lanes}") };
             let failed = run.as_ref().err().and_then(|(_, time)| *time);
@@ -74,12 +74,17 @@ pub fn driven_outcomes(
     Ok(outcomes)
 }
 
+/// Ways of closing positions that run the variant of an index.
+fn closings(extent: &Extent, index: usize) -> impl Iterator<Item = &'static Closing> {
+    CLOSINGS.iter().enumerate().filter(move |(way, _)| extent.runs(*way, index)).map(|(_, closing)| closing)
+}
+
 /// A similar mechanism beside the mechanism itself, from guesses that are similar.
 fn similar_outcomes(
     [own, other]: [&dyn DrivenVariants; 2],
     variation: &Variation,
     subject: &VariedParts,
-    extent: &Extent,
+    (extent, index): (&Extent, usize),
 ) -> Vec<Outcome> {
     let mut shift = own.guess();
     in_other_size(&mut shift, variation, subject);
@@ -91,7 +96,7 @@ fn similar_outcomes(
     };
     let steps = STEPS as u32;
     let mut outcomes = Vec::new();
-    for closing in CLOSINGS.iter().filter(|closing| extent.has(kind(**closing))) {
+    for closing in closings(extent, index).filter(|closing| extent.has(kind(**closing))) {
         let run = positions(runs.as_ref(), *closing, extent.until, steps);
         let own_run = positions(own_runs.as_ref(), *closing, extent.until, steps);
         let refused =

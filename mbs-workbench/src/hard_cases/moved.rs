@@ -126,6 +126,16 @@ pub fn moved_outcomes(
         if clock.is_over() {
             break;
         }
+        let running: Vec<_> = methods
+            .iter()
+            .zip(&bases)
+            .enumerate()
+            .filter(|(method, _)| extent.runs(*method, index))
+            .map(|(_, running)| running)
+            .collect();
+        if running.is_empty() {
+            continue;
+        }
         let made = varied(Some(&variation));
         let own = match variation.class {
             Class::Parameters | Class::Guess => made.as_ref().ok().map(&of),
@@ -143,12 +153,12 @@ pub fn moved_outcomes(
                 let started = own.mechanism.start(&own.mechanism.guess());
                 own.start = Some(started.map_err(|failure| failure.to_string())?);
             }
-            for (method, base) in methods.iter().zip(&bases) {
+            for (method, base) in running {
                 outcomes.push(similar_outcome([&own, made], &variation, (*method, base), (subject, extent)));
             }
             continue;
         }
-        for (method, base) in methods.iter().zip(&bases) {
+        for (method, base) in running {
             if let Some(references) = judged(&made, &usual, own.as_ref()) {
                 outcomes.push(outcome(&variation, *method, base, references, (extent, scales)));
             }
@@ -371,9 +381,10 @@ fn refused_outcomes(
 ) -> Vec<Outcome> {
     let Some(case) = &extent.description else { return Vec::new() };
     let mut outcomes = Vec::new();
-    for seed in &extent.seeds {
+    for (index, seed) in extent.seeds.iter().enumerate() {
         let variation = Variation::of(*seed, subject);
-        for method in &extent.methods {
+        let methods = extent.methods.iter().enumerate().filter(|(method, _)| extent.runs(*method, index));
+        for (_, method) in methods {
             let run = varied(Some(&variation)).map(|varied| {
                 let resolution = match method.is_adaptive() {
                     true => Resolution::Tolerance(TOLERANCES[usize::from(varied.numbers == Numbers::Single)]),

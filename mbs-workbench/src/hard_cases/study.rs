@@ -21,6 +21,8 @@ pub struct Extent {
     pub methods: Vec<MotionMethod>,
     /// Seeds of the variants.
     pub seeds: Vec<u64>,
+    /// Each method runs one of the variants, in turn, the first method that of this index; none: each runs all.
+    pub in_turn: Option<usize>,
     /// End of the motion (s).
     pub until: f64,
     /// Known values and bounds of a case of the list.
@@ -31,6 +33,11 @@ impl Extent {
     /// `true` where a kind of method is run.
     pub fn has(&self, kind: MethodKind) -> bool {
         self.description.as_ref().is_none_or(|case| case.refused.is_some() || case.bounds.contains_key(&kind))
+    }
+
+    /// `true` where a method runs a variant, both by their indices.
+    pub fn runs(&self, method: usize, variant: usize) -> bool {
+        self.in_turn.is_none_or(|first| (first + method) % self.seeds.len().max(1) == variant)
     }
 
     /// `true` where no run has an answer.
@@ -255,5 +262,7 @@ pub fn study(
     let mut run: Vec<u64> = outcomes.iter().map(|outcome| outcome.seed).collect();
     run.sort_unstable();
     run.dedup();
-    Ok(Study { not_run: variants - run.len(), outcomes, left_out })
+    // Of variants in turn no method runs some.
+    let not_run = if extent.in_turn.is_some() { 0 } else { variants - run.len() };
+    Ok(Study { not_run, outcomes, left_out })
 }

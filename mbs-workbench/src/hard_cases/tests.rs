@@ -83,7 +83,13 @@ fn result(
     methods: &[MotionMethod],
     until: f64,
 ) -> MatrixResult {
-    let extent = Extent { methods: methods.to_vec(), seeds: (0..14).collect(), until, description: None };
+    let extent = Extent {
+        methods: methods.to_vec(),
+        seeds: (0..14).collect(),
+        until,
+        in_turn: None,
+        description: None,
+    };
     let clock = Clock::of(Duration::from_secs(600));
     let found = study(&Own { make, equations }, &extent, &clock, &mut |_, _| ()).expect("a study");
     MatrixResult::of(found, "own".to_string(), "Own".to_string())
@@ -166,6 +172,7 @@ fn as_a_case(known: &str) -> MatrixResult {
         methods: METHODS.to_vec(),
         seeds: (0..7).collect(),
         until: 0.3,
+        in_turn: None,
         description: Some(description),
     };
     let found = study(&own, &extent, &Clock::of(Duration::from_secs(600)), &mut |_, _| ()).expect("a study");
@@ -193,7 +200,8 @@ fn a_page_holds_all_variants_and_a_seed_replays_one() {
     let equations = erase(Pendulum::default()).into_equations();
     let own = Own { make: crate::variable!(Pendulum::default()), equations: equations.as_ref() };
     let run = |seeds: Vec<u64>| {
-        let extent = Extent { methods: METHODS[..1].to_vec(), seeds, until: 0.2, description: None };
+        let extent =
+            Extent { methods: METHODS[..1].to_vec(), seeds, until: 0.2, in_turn: None, description: None };
         let found =
             study(&own, &extent, &Clock::of(Duration::from_secs(600)), &mut |_, _| ()).expect("a study");
         MatrixResult::of(found, "own".to_string(), "Own <b>".to_string())
@@ -214,8 +222,13 @@ fn a_page_holds_all_variants_and_a_seed_replays_one() {
 fn there_is_an_end_to_the_time() {
     let equations = erase(Pendulum::default()).into_equations();
     let own = Own { make: crate::variable!(Pendulum::default()), equations: equations.as_ref() };
-    let extent =
-        Extent { methods: METHODS[..1].to_vec(), seeds: (0..9).collect(), until: 0.1, description: None };
+    let extent = Extent {
+        methods: METHODS[..1].to_vec(),
+        seeds: (0..9).collect(),
+        until: 0.1,
+        in_turn: None,
+        description: None,
+    };
     let found = study(&own, &extent, &Clock::of(Duration::ZERO), &mut |_, _| ()).expect("a study");
     assert_eq!((found.outcomes.len(), found.not_run), (0, 9));
 }

@@ -36,7 +36,7 @@ impl Encoder<'_> {
     ) -> Result<Vec<Outcome>, String> {
         let subject = VariedParts { classes: vec![Class::Steps, Class::Single], ..subject.clone() };
         let mut outcomes = Vec::new();
-        for seed in &extent.seeds {
+        for (_, seed) in extent.seeds.iter().enumerate().filter(|(index, _)| extent.runs(0, *index)) {
             let variation = Variation { finer: 1.0, ..Variation::of(*seed, &subject) };
             let Some(bound) = self.case.bound(MethodKind::Drives, &variation) else { continue };
             let samples = self.samples(oracle, extent.until, *seed).map_err(|Gap(reason)| reason)?;

@@ -114,7 +114,8 @@ function createContents() {
 function createText() {
   byId("kicker").textContent = `mbs · ${data.name}`;
   byId("title").textContent = data.title;
-  byId("description").textContent = data.description || "";
+  // Words between backticks are code.
+  byId("description").replaceChildren(...(data.description || "").split("`").map((part, i) => i % 2 ? el("code", { textContent: part }) : part));
   byId("command").textContent = data.command || "";
   byId("command").parentNode.hidden = !data.command;
   createFacts();
