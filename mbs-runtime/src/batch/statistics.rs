@@ -50,10 +50,32 @@ impl<R: Real, const L: usize> Notes<R, L> {
         (self.fallback, self.passed) = ([false; L], [false; L]);
     }
 
-    /// `true` if any lane passes a singular position with a step to such signs.
+    /// As [`follow`](Self::follow), after a step of the lanes from `first` on.
     #[inline(always)]
-    pub fn passes(&self, orientation: &[u64; L]) -> bool {
-        let signs = self.orientation.iter().zip(orientation);
+    pub fn follow_group<P: Scalar<Real = R>, const N: usize>(
+        &mut self,
+        trial: &FastStep<P, N>,
+        first: usize,
+        (margin, time): (P, P),
+    ) {
+        let zero = P::constant(0.0);
+        let moves = time.less(zero) | zero.less(time);
+        let Drift { change, time: duration } = &mut self.drift;
+        P::select(moves, trial.margin - margin, P::read(&change.0, first)).write(&mut change.0, first);
+        P::select(moves, time, P::read(&duration.0, first)).write(&mut duration.0, first);
+        trial.residual.write(&mut self.residual.0, first);
+        trial.row.write(&mut self.row.0, first);
+        trial.correction.write(&mut self.correction.0, first);
+        trial.evaluations().write(&mut self.evaluations.0, first);
+        for flags in [&mut self.fallback, &mut self.passed] {
+            flags.iter_mut().skip(first).take(P::LANES).for_each(|flag| *flag = false);
+        }
+    }
+
+    /// `true` if any lane from `first` on passes a singular position with a step to such signs.
+    #[inline(always)]
+    pub fn passes(&self, first: usize, orientation: &[u64]) -> bool {
+        let signs = self.orientation.iter().skip(first).zip(orientation);
         signs.fold(0, |turned, (before, after)| turned | (before ^ after)) != 0
     }
 
