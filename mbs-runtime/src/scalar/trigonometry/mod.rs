@@ -28,6 +28,9 @@ const NARROW: usize = if cfg!(target_feature = "avx") {
     1
 };
 
+/// `true` if registers have no instruction that chooses numbers by a mask: then bits are exchanged in fewer operations.
+const BY_BITS: bool = cfg!(all(target_feature = "sse2", not(target_feature = "sse4.1")));
+
 /// As [`WIDE`], in single precision.
 const WIDE_SINGLE: usize = if cfg!(target_feature = "avx") { 8 } else { NARROW_SINGLE };
 
@@ -50,7 +53,7 @@ trait Angle: Copy + Default + Mul<Output = Self> + Add<Output = Self> {
 
 /// End of a kernel, by the bits of its numbers.
 macro_rules! by_bits {
-    ($number:ty, $bits:ty, $signed:ty) => {
+    ($number:ty, $bits:ty) => {
         /// Sine and cosine of an angle from those of its remainder: odd quadrants exchange them, the second bit of n and of n + 1 is
         /// the sign.
         #[inline(always)]
@@ -60,8 +63,7 @@ macro_rules! by_bits {
         ) -> ($number, $number) {
             let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
             let (first, second) = if FEW {
-                let last = <$bits>::BITS - 1;
-                let odd = (((quadrant << last) as $signed) >> last) as $bits;
+                let odd = (quadrant & 1).wrapping_neg();
                 let exchanged = (sine ^ cosine) & odd;
                 (sine ^ exchanged, cosine ^ exchanged)
             } else {
@@ -264,7 +266,7 @@ where
         if cfg!(feature = "libm") {
             (*sine, *cosine) = angle.of_library();
         } else {
-            (*sine, *cosine) = angle.sin_cos::<Best, false>();
+            (*sine, *cosine) = angle.sin_cos::<Best, BY_BITS>();
             near &= angle.is_near();
         }
     }
