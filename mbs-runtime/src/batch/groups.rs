@@ -84,7 +84,7 @@ where
         }
         let trial = FastStep::from_prediction(
             (&mechanism, &prepared.parameters),
-            (margin, &prepared.weights),
+            &Start { t: from, q: &prediction, qd: &scales, qdd: &scales, margin, weights: &prepared.weights },
             (&prediction, all),
             to,
             zero.less(moving),

@@ -99,16 +99,14 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         let scales = mechanism.coordinate_scales(parameters);
         let [most_second, _] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let (prediction, foreseen) = start.predicted(t, &scales, most_second);
-        let here = (start.margin, start.weights);
-        Self::from_prediction((mechanism, parameters), here, (&prediction, foreseen), t, lanes)
+        Self::from_prediction((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
     }
 
-    /// The step from its prediction, and the lanes where its second-order term is small. `start`: margin and
-    /// [`weights`](Start::weights) there.
+    /// The step from its prediction, and the lanes where its second-order term is small. Of `start` margin and weights are read alone.
     #[inline(always)]
     pub(crate) fn from_prediction<S: Kinematic<T, N, M>, const M: usize>(
         (mechanism, parameters): (&S, &S::Parameters),
-        start: (T, &[T; N]),
+        start: &Start<'_, T, N>,
         (prediction, foreseen): (&[T; N], T::Mask),
         t: T,
         lanes: T::Mask,
@@ -139,7 +137,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
     #[inline(never)]
     fn by_stages<S: Kinematic<T, N, M>, const M: usize>(
         mechanism: (&S, &S::Parameters),
-        start: (T, &[T; N]),
+        start: &Start<'_, T, N>,
         prediction: (&[T; N], T::Mask),
         t: &T,
         lanes: T::Mask,
@@ -151,7 +149,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
     #[inline(always)]
     fn in_stages<S: Kinematic<T, N, M>, const M: usize>(
         (mechanism, parameters): (&S, &S::Parameters),
-        start: (T, &[T; N]),
+        start: &Start<'_, T, N>,
         (prediction, foreseen): (&[T; N], T::Mask),
         t: T,
         lanes: T::Mask,
@@ -257,8 +255,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
 struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> {
     mechanism: &'a S,
     parameters: &'a S::Parameters,
-    /// Margin and weights at the start.
-    start: (T, &'a [T; N]),
+    start: &'a Start<'a, T, N>,
     prediction: &'a [T; N],
     /// Lanes whose prediction has a second-order term so small that no link can have turned far.
     foreseen: T::Mask,
@@ -276,14 +273,14 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
         (position, margin): (&S::Position, &Margin<T>),
         sum: T,
     ) -> FastStep<T, N> {
-        let (correction, size) = way_and_size(&q, self.prediction, self.start.1);
+        let (correction, size) = way_and_size(&q, self.prediction, self.start.weights);
         // Written so that NaN is not quick. A sum is finite and small where its terms are; where it is not, a careful step
         // looks at them one by one.
         let size = size + T::constant(0.0) * sum;
         let mut held = self.solver.closed;
         // A single mechanism is asked before its step.
         if T::LANES > 1 {
-            held = held & singular::ZONE.of::<T>().less(self.start.0);
+            held = held & singular::ZONE.of::<T>().less(self.start.margin);
         }
         for (index, branch) in self.mechanism.branches(self.parameters, position).as_ref().iter().enumerate()
         {

@@ -129,4 +129,4 @@ fn series<A: Arithmetic<f64>>([a, b, c, d, e, f]: [f64; 6], square: f64, fourth:
     A::multiply_add(fourth, A::multiply_add(fourth, high, middle), low)
 }
 
-by_bits!(f64, u64);
+by_bits!(f64, u64, i64);

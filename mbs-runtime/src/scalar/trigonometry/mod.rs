@@ -53,7 +53,7 @@ trait Angle: Copy + Default + Mul<Output = Self> + Add<Output = Self> {
 
 /// End of a kernel, by the bits of its numbers.
 macro_rules! by_bits {
-    ($number:ty, $bits:ty) => {
+    ($number:ty, $bits:ty, $signed:ty) => {
         /// Sine and cosine of an angle from those of its remainder: odd quadrants exchange them, the second bit of n and of n + 1 is
         /// the sign.
         #[inline(always)]
@@ -63,7 +63,8 @@ macro_rules! by_bits {
         ) -> ($number, $number) {
             let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
             let (first, second) = if FEW {
-                let odd = (quadrant & 1).wrapping_neg();
+                let last = <$bits>::BITS - 1;
+                let odd = (((quadrant << last) as $signed) >> last) as $bits;
                 let exchanged = (sine ^ cosine) & odd;
                 (sine ^ exchanged, cosine ^ exchanged)
             } else {

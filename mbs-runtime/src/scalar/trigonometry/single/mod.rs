@@ -91,4 +91,4 @@ fn series<A: Arithmetic<f32>>([a, b, c]: [f32; 3], square: f32, fourth: f32) -> 
     A::multiply_add(fourth, c, A::multiply_add(square, b, a))
 }
 
-by_bits!(f32, u32);
+by_bits!(f32, u32, i32);
