@@ -144,7 +144,7 @@ where
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = FastStep::of(mechanism, parameters, &start, to, !self.waits);
-        if !Lanes::<R, L>::all(trial.quick) || self.notes.passes(0, &trial.orientation) {
+        if !Lanes::<R, L>::all(trial.quick) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
             return Some(self.judged(&doubtful, from, to));
