@@ -738,6 +738,14 @@ const _: () = {
     }
     impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Kinematic<T, 5usize> for FourBar<T> {
         type Factors = __Factors<T>;
+        type GroupNumber = <T::Real as ::mbs_runtime::Real>::Register;
+        type Group = FourBar<<T::Real as ::mbs_runtime::Real>::Register>;
+        #[inline]
+        fn group(&self, __first: ::core::primitive::usize) -> Self::Group {
+            FourBar {
+                omega: T::part(self.omega, __first),
+            }
+        }
         #[inline]
         fn solve_blocks<__S: ::mbs_runtime::BlockSolver<T>>(
             &self,

@@ -68,6 +68,7 @@ where
         let weights = weights(&mechanism.coordinate_scales(&parameters));
         let mut batch = Batch {
             solved: mechanism.values(),
+            groups: Self::prepared(&mechanism),
             mechanism,
             parameters,
             weights,

@@ -36,6 +36,9 @@ where
         }
         self.parameters = self.mechanism.parameters();
         self.weights = weights(&self.mechanism.coordinate_scales(&self.parameters));
+        if const { Self::IN_GROUPS } {
+            self.groups = Self::prepared(&self.mechanism);
+        }
         // The steppers get theirs where they are needed.
         (self.changed, self.outdated) = ([true; L], [true; L]);
         self.waits = self.out | !are_valid(&self.mechanism);

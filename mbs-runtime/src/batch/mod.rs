@@ -2,17 +2,18 @@
 
 mod assembly;
 mod changes;
+mod groups;
 pub(crate) mod lane_state;
 pub(crate) mod statistics;
 
 use core::array::from_fn;
 use core::f64::consts::PI;
 
+use crate::batch::groups::Prepared;
 use crate::batch::lane_state::Standing;
 use crate::batch::statistics::Notes;
 use crate::block_solvers::convergence::Statistics;
 use crate::failure::{Failure, FailureKind};
-use crate::kinematics::link_lengths;
 use crate::mechanism::phase::Phase;
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::lanes::{LaneMask, Lanes};
@@ -60,7 +61,7 @@ use crate::stepper::whole_turns::second;
 #[derive(Clone)]
 pub struct Batch<S, R, const L: usize, const N: usize, const M: usize = N>
 where
-    S: Mechanism<Lanes<R, L>, N, M>,
+    S: Kinematic<Lanes<R, L>, N, M>,
     R: Real,
 {
     /// With the phases of drives that prescribe a rate, of all lanes.
@@ -68,6 +69,8 @@ where
     parameters: S::Parameters,
     /// Reciprocals of the coordinates' scales.
     weights: [Lanes<R, L>; N],
+    /// Both, of each group, where lanes are computed in groups.
+    groups: [Option<Prepared<S::Group, S::GroupNumber, N, M>>; L],
     t: Lanes<R, L>,
     /// The time of lanes with coordinates that turn, with the part that its rounding has left out.
     clock: Phase<Lanes<R, L>>,
@@ -122,28 +125,56 @@ where
         if const { !S::PHASES.is_empty() } {
             self.mechanism.advance_phases(from, to);
         }
+        let plain =
+            if const { Self::IN_GROUPS } { self.group_by_group(from, to) } else { self.together(from, to) };
+        if let Some(plain) = plain {
+            return Some(self.apart(plain, &before, t));
+        }
+        self.changed = [false; L];
+        self.pass_time(Lanes::<R, L>::mask(true), Lanes(t));
+        if const { !S::TURNS.is_empty() } {
+            self.take_turns_off();
+        }
+        None
+    }
+
+    /// Steps all lanes at once; returns the lanes that have moved, unless all have.
+    #[inline(always)]
+    fn together(&mut self, from: Lanes<R, L>, to: Lanes<R, L>) -> Option<LaneMask<R, L>> {
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = FastStep::of(mechanism, parameters, &start, to, !self.waits);
         if !Lanes::<R, L>::all(trial.quick) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
-            return Some(self.apart(&doubtful, &before, t));
+            return Some(self.judged(&doubtful, from, to));
         }
-        self.changed = [false; L];
         self.notes.follow(&trial, self.margin, to - from);
         self.margin = trial.margin;
-        self.pass_time(Lanes::<R, L>::mask(true), Lanes(t));
         for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
             for (old, new) in old.iter_mut().zip(new) {
                 Lanes::<R, L>::side_by_side();
                 *old = *new;
             }
         }
-        if const { !S::TURNS.is_empty() } {
-            self.take_turns_off();
-        }
         None
+    }
+
+    /// Moves on the lanes of a step of all lanes that is plain there; returns these.
+    #[cold]
+    #[inline(never)]
+    fn judged(
+        &mut self,
+        trial: &FastStep<Lanes<R, L>, N>,
+        from: Lanes<R, L>,
+        to: Lanes<R, L>,
+    ) -> LaneMask<R, L> {
+        let Batch { q, qd, qdd, margin, weights, .. } = &*self;
+        let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
+        let scales = self.mechanism.coordinate_scales(&self.parameters);
+        let plain = self.plain(trial, 0, &start, to, &scales);
+        self.take_over(trial, 0, plain, (self.margin, to - from));
+        plain
     }
 
     /// The times between which the lanes step to `t` (L, s). If coordinates turn, no function knows the time, and a step is one
@@ -193,41 +224,20 @@ where
         }
     }
 
-    /// Takes the step over in the lanes where it is plain; the others are stepped alone.
+    /// Steps alone what is not among the lanes `plain`, which have moved to their times `t`, with phases that were `before`.
     #[cold]
     #[inline(never)]
     fn apart(
         &mut self,
-        trial: &FastStep<Lanes<R, L>, N>,
+        plain: LaneMask<R, L>,
         before: &S::Phases,
         t: [R; L],
     ) -> [Result<Statistics, Failure>; L] {
-        // The homotopy decides what a passage leads to.
-        let passes = LaneMask::new(from_fn(|lane| trial.orientation(lane) != self.notes.orientation(lane)));
-        let (from, to) = self.span(t);
-        let Batch { q, qd, qdd, margin, weights, .. } = &*self;
-        let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
-        let scales = self.mechanism.coordinate_scales(&self.parameters);
-        let judgement = trial.judgement(&start, to, &scales, const { link_lengths::any(S::COORDINATES) });
-        let mut plain = judgement.plain & !judgement.coarse & !passes;
-        if !Lanes::<R, L>::all(!(plain & judgement.doubtful)) {
-            // Only its own stepper knows what a lane was changed from.
-            let settles = !LaneMask::new(self.changed)
-                & trial.settles((&const { link_lengths::points(S::COORDINATES) }, &scales), &start, to);
-            plain = plain & (!judgement.doubtful | settles);
-        }
-        let mut notes = self.notes;
-        notes.follow(trial, self.margin, to - from);
         let mut phases = self.mechanism.phases();
         for (phase, before) in phases.as_mut().iter_mut().zip(before.as_ref()) {
             *phase = phase.where_true(plain, *before);
         }
         self.mechanism.set_phases(phases);
-        let merge = |old: &mut Lanes<R, L>, new: &Lanes<R, L>| *old = Lanes::select(plain, *new, *old);
-        for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
-            old.iter_mut().zip(new).for_each(|(old, new)| merge(old, new));
-        }
-        merge(&mut self.margin, &trial.margin);
         self.changed = from_fn(|lane| at(&self.changed, lane, false) && !Lanes::<R, L>::test(plain, lane));
         self.pass_time(plain, Lanes(t));
         if const { !S::TURNS.is_empty() } {
@@ -237,9 +247,7 @@ where
             if !Lanes::<R, L>::test(plain, lane) {
                 return self.alone(lane, Lanes(t).lane(lane));
             }
-            self.notes.put(lane, notes.drift(lane), notes.statistics(lane));
-            self.notes.count(lane, notes.passages(lane), notes.orientation(lane));
-            Ok(notes.statistics(lane))
+            Ok(self.notes.statistics(lane))
         })
     }
 

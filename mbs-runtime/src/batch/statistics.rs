@@ -50,11 +50,45 @@ impl<R: Real, const L: usize> Notes<R, L> {
         (self.fallback, self.passed) = ([false; L], [false; L]);
     }
 
+    /// As [`follow`](Self::follow), after a step of the lanes from `first` on.
+    #[inline(always)]
+    pub fn follow_group<P: Scalar<Real = R>, const N: usize>(
+        &mut self,
+        trial: &FastStep<P, N>,
+        first: usize,
+        (margin, time): (P, P),
+    ) {
+        let zero = P::constant(0.0);
+        let moves = time.less(zero) | zero.less(time);
+        let Drift { change, time: duration } = &mut self.drift;
+        P::select(moves, trial.margin - margin, P::read(&change.0, first)).write(&mut change.0, first);
+        P::select(moves, time, P::read(&duration.0, first)).write(&mut duration.0, first);
+        trial.residual.write(&mut self.residual.0, first);
+        trial.row.write(&mut self.row.0, first);
+        trial.correction.write(&mut self.correction.0, first);
+        trial.evaluations().write(&mut self.evaluations.0, first);
+        for flags in [&mut self.fallback, &mut self.passed] {
+            flags.iter_mut().skip(first).take(P::LANES).for_each(|flag| *flag = false);
+        }
+    }
+
     /// `true` if any lane passes a singular position with a step to such signs.
     #[inline(always)]
     pub fn passes(&self, orientation: &[u64; L]) -> bool {
         let signs = self.orientation.iter().zip(orientation);
         signs.fold(0, |turned, (before, after)| turned | (before ^ after)) != 0
+    }
+
+    /// As [`passes`](Self::passes), with the step `trial` of the lanes from `first` on.
+    #[inline(always)]
+    pub fn passes_in_group<P: Scalar<Real = R>, const N: usize>(
+        &self,
+        first: usize,
+        trial: &FastStep<P, N>,
+    ) -> bool {
+        // Lane by lane: signs that were put down one by one would be waited for if they were loaded together.
+        let turned = |lane: usize| self.orientation(first.saturating_add(lane)) ^ trial.orientation(lane);
+        (0..P::LANES).fold(0, |all, lane| all | turned(lane)) != 0
     }
 
     #[inline(always)]

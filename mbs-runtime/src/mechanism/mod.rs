@@ -325,8 +325,16 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
 pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T, N, M> {
     /// Factorised diagonal blocks and the entries of Φ_q off them.
     type Factors: Copy;
+    /// Numbers of the lanes that a [`Batch`](crate::Batch) computes together where it has more: a register's worth. Single ones
+    /// where functions of the caller may take no others; then all lanes are computed together.
+    type GroupNumber: Scalar<Real = T::Real>;
+    /// The same designs in as many lanes.
+    type Group: Kinematic<Self::GroupNumber, N, M>;
     /// `true` if [`solve_motion`](Self::solve_motion) goes block by block, so that steps gain from it.
     const BLOCK_BY_BLOCK: bool = false;
+
+    /// The designs in the lanes from `first` on.
+    fn group(&self, first: usize) -> Self::Group;
 
     /// Solves Φ(q, t) = 0 block after block in the compile-time order, each to convergence before the next
     /// begins; coordinates that a row gives explicitly are assigned.

@@ -121,6 +121,17 @@ impl<T: Scalar> Phase<T> {
             remainder: self.remainder.lane(lane),
         }
     }
+
+    /// The phases in as many lanes as `P` has, from lane `first` on.
+    #[inline]
+    pub fn part<P: Scalar<Real = T::Real>>(self, first: usize) -> Phase<P> {
+        Phase {
+            value: self.value.part(first),
+            rate: self.rate.part(first),
+            acceleration: self.acceleration.part(first),
+            remainder: self.remainder.part(first),
+        }
+    }
 }
 
 impl<R: Real, const L: usize> Phase<Lanes<R, L>> {

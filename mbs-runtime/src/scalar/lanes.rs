@@ -14,11 +14,22 @@ use core::sync::atomic::compiler_fence;
 
 use crate::scalar::number::{Real, Scalar};
 
+/// Bytes of a vector register of the target.
+pub(crate) const REGISTER: usize = if cfg!(target_feature = "avx512f") {
+    64
+} else if cfg!(target_feature = "avx") {
+    32
+} else {
+    16
+};
+
 /// `L` numbers that take part in the same operations; the compiler turns them into vector registers.
 ///
-/// They begin at the beginning of a cache line, so that no register's worth of them lies in two.
+/// They begin where a vector register of the target may begin, so that no register's worth of them lies in two cache lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(64))]
+#[cfg_attr(target_feature = "avx512f", repr(C, align(64)))]
+#[cfg_attr(all(target_feature = "avx", not(target_feature = "avx512f")), repr(C, align(32)))]
+#[cfg_attr(not(any(target_feature = "avx", target_feature = "avx512f")), repr(C, align(16)))]
 pub struct Lanes<R, const L: usize>(pub [R; L]);
 
 /// Zeros: inputs of a mechanism in lanes that are not set yet.
@@ -138,6 +149,21 @@ impl<R: Real, const L: usize> Lanes<R, L> {
     }
 }
 
+/// `numbers` from place `first` on, of which there are fewer than lanes: the last one stands for the others.
+#[cold]
+#[inline(never)]
+fn read_few<R: Real, const L: usize>(numbers: &[R], first: usize) -> Lanes<R, L> {
+    let of = |lane: usize| numbers.get(first.saturating_add(lane)).or(numbers.last()).copied();
+    Lanes(from_fn(|lane| of(lane).unwrap_or(R::constant(0.0))))
+}
+
+/// Writes those of `lanes` that have a place among `numbers` from place `first` on.
+#[cold]
+#[inline(never)]
+fn write_few<R: Real>(lanes: &[R], numbers: &mut [R], first: usize) {
+    numbers.iter_mut().skip(first).zip(lanes).for_each(|(place, number)| *place = *number);
+}
+
 /// Functions of the numbers of each lane, by `each` or `zip`.
 macro_rules! lane_by_lane {
     ($by:ident, $($name:ident $(($other:ident))?),*) => {
@@ -175,6 +201,24 @@ impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
     #[inline(always)]
     fn per_lane<X: Copy>(value: impl FnMut(usize) -> X) -> [X; L] {
         from_fn(value)
+    }
+    #[inline(always)]
+    fn part<P: Scalar<Real = R>>(self, first: usize) -> P {
+        P::read(&self.0, first)
+    }
+    #[inline(always)]
+    fn read(numbers: &[R], first: usize) -> Self {
+        match numbers.get(first..).and_then(|rest| rest.first_chunk::<L>()) {
+            Some(numbers) => Lanes(*numbers),
+            None => read_few(numbers, first),
+        }
+    }
+    #[inline(always)]
+    fn write(self, numbers: &mut [R], first: usize) {
+        match numbers.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<L>()) {
+            Some(numbers) => *numbers = self.0,
+            None => write_few(&self.0, numbers, first),
+        }
     }
     /// A loop over numbers of many lanes each looks to the compiler like one over numbers that lie far apart. It would
     /// gather one lane of several numbers into a register, and scatter the results. Nothing may be moved over this

@@ -10,6 +10,7 @@ use core::ops::Neg;
 use core::ops::Not;
 use core::ops::Sub;
 
+use crate::scalar::lanes::{Lanes, REGISTER};
 use crate::scalar::trigonometry;
 
 /// A number as emitted code sees it; open to implementations outside this crate.
@@ -50,6 +51,25 @@ pub trait Scalar:
     fn lane(self, lane: usize) -> Self::Real;
     /// One `X` a lane, made in the order of the lanes.
     fn per_lane<X: Copy>(value: impl FnMut(usize) -> X) -> Self::Lanes<X>;
+
+    /// The numbers of as many lanes as `P` has, from lane `first` on.
+    #[inline(always)]
+    fn part<P: Scalar<Real = Self::Real>>(self, first: usize) -> P {
+        P::from_lanes(|lane| self.lane(first.saturating_add(lane)))
+    }
+    /// `numbers` from place `first` on, one a lane; the last one where there are fewer, 0 where there is none.
+    #[inline(always)]
+    fn read(numbers: &[Self::Real], first: usize) -> Self {
+        let of = |lane: usize| numbers.get(first.saturating_add(lane)).or(numbers.last()).copied();
+        Self::from_lanes(|lane| of(lane).unwrap_or(Self::Real::constant(0.0)))
+    }
+    /// Writes the number of each lane to `numbers`, from place `first` on; those that have no place are left out.
+    #[inline(always)]
+    fn write(self, numbers: &mut [Self::Real], first: usize) {
+        for (lane, place) in numbers.iter_mut().skip(first).take(Self::LANES).enumerate() {
+            *place = self.lane(lane);
+        }
+    }
 
     /// Fence after a number in a loop over many: nothing here, while lanes keep the compiler from taking the numbers apart.
     #[inline(always)]
@@ -144,6 +164,8 @@ pub trait Real: Scalar<Real = Self, Mask = bool> + PartialOrd {
         + BitAnd<Output = Self::Word>
         + BitOr<Output = Self::Word>
         + Not<Output = Self::Word>;
+    /// As many such numbers as fill a vector register of the target, or the number itself where registers are of no use.
+    type Register: Scalar<Real = Self>;
 
     /// Distance from 1 to the next number.
     const EPSILON: Self;
@@ -234,6 +256,7 @@ macro_rules! real {
 
         impl Real for $real {
             type Word = $word;
+            type Register = Lanes<$real, { REGISTER / size_of::<$real>() }>;
 
             const EPSILON: Self = $real::EPSILON;
             const FALSE: $word = 0;

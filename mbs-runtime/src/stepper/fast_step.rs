@@ -9,12 +9,13 @@ use crate::kinematics::link_lengths;
 use crate::linear_algebra::parts::at;
 use crate::mechanism::margin::Margin;
 use crate::mechanism::{Kinematic, negated};
+use crate::scalar::lanes::REGISTER;
 use crate::scalar::number::{Real, Scalar, index};
 use crate::stepper::instant::is_coarse;
 use crate::tolerances::{positions, singular};
 
 /// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
-const FEW: usize = 8;
+pub(crate) const FEW: usize = 8;
 
 /// Second-order term (reference lengths) from which on a step of a mechanism with coordinates that are lengths is checked. With
 /// less, no link of a thousandth turns by half a radian.
@@ -96,33 +97,39 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         lanes: T::Mask,
     ) -> Self {
         let scales = mechanism.coordinate_scales(parameters);
-        let [most_second, most_way] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
+        let [most_second, _] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let (prediction, foreseen) = start.predicted(t, &scales, most_second);
+        Self::from_prediction((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
+    }
+
+    /// The step from its prediction, and the lanes where its second-order term is small. Of `start` margin and weights are read alone.
+    #[inline(always)]
+    pub(crate) fn from_prediction<S: Kinematic<T, N, M>, const M: usize>(
+        (mechanism, parameters): (&S, &S::Parameters),
+        start: &Start<'_, T, N>,
+        (prediction, foreseen): (&[T; N], T::Mask),
+        t: T,
+        lanes: T::Mask,
+    ) -> Self {
+        let [_, most_way] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let most_way = T::constant(most_way);
-        // Lanes keep a processor busy as they are, and a compiler sees them together in short stages. Each way is judged where it
-        // ends: what both had to put down for one judge would be copied.
-        if S::BLOCK_BY_BLOCK && T::LANES == 1 {
+        // Block after block, rates keep a processor busy that waits for the next position. More lanes than fill a register do so as
+        // they are, and a compiler sees them together in short stages. Each way is judged where it ends: what both had to put down for
+        // one judge would be copied.
+        if S::BLOCK_BY_BLOCK && (T::LANES == 1 || size_of::<T>() <= REGISTER) {
             let zeros = [T::constant(0.0); N];
-            let (mut motion, mut solver) = ([prediction, zeros, zeros], FastNewton::new(lanes));
+            let (mut motion, mut solver) = ([*prediction, zeros, zeros], FastNewton::new(lanes));
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
-            if T::all(solved.ordered) {
+            if T::all(if T::LANES == 1 { solved.ordered } else { solved.ordered | !lanes }) {
                 let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
-                let judge = Judge {
-                    mechanism,
-                    parameters,
-                    start,
-                    prediction: &prediction,
-                    foreseen,
-                    most_way,
-                    solver,
-                };
+                let judge = Judge { mechanism, parameters, start, prediction, foreseen, most_way, solver };
                 return judge.judged(motion, (&solved.position, &solved.margin), sum);
             }
             // The addresses of copies.
-            let (prediction, t, foreseen) = (prediction, t, foreseen);
+            let (prediction, t, foreseen) = (*prediction, t, foreseen);
             return Self::by_stages((mechanism, parameters), start, (&prediction, foreseen), &t, lanes);
         }
-        Self::in_stages((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
+        Self::in_stages((mechanism, parameters), start, (prediction, foreseen), t, lanes)
     }
 
     /// [`in_stages`](Self::in_stages), out of the way.
@@ -366,6 +373,19 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
         }
         (predicted, all)
     }
+}
+
+/// The prediction of a coordinate (its value, rate and acceleration) of this `scale` after `h`, and the lanes in which its second-order
+/// term is less than `most`.
+#[inline(always)]
+pub(crate) fn foreseen<T: Scalar>(
+    [place, rate, acceleration]: [T; 3],
+    h: T,
+    scale: T,
+    most: f64,
+) -> (T, T::Mask) {
+    let second = T::constant(0.5) * h * h * acceleration;
+    (place + h * rate + second, trusted(second, scale, most))
 }
 
 /// The prediction from q, q̇ and q̈ where its second-order term is not small in a lane: lanes where it is small enough to be one, and

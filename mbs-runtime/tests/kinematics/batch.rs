@@ -227,7 +227,7 @@ mechanism! {
 }
 
 /// Eight lanes, each with steps of its own length, against eight mechanisms alone; `rounding`: relative.
-fn assert_as_alone<S, R: Real, const N: usize>(mechanism: S, guess: [f64; N], rounding: f64)
+pub fn assert_as_alone<S, R: Real, const N: usize>(mechanism: S, guess: [f64; N], rounding: f64)
 where
     S: Kinematic<Lanes<R, 8>, N>,
     S::Lane: Kinematic<R, N>,

@@ -258,6 +258,17 @@ pub struct Factors<T> {
 
 impl<T: Scalar, const B: usize> Kinematic<T, 5> for FourBar<T, B> {
     type Factors = Factors<T>;
+    type GroupNumber = <T::Real as mbs_runtime::Real>::Register;
+    type Group = FourBar<Self::GroupNumber, B>;
+
+    fn group(&self, first: usize) -> Self::Group {
+        FourBar {
+            lengths: self.lengths.map(|length| length.part(first)),
+            alpha: self.alpha.part(first),
+            omega: self.omega.part(first),
+            side: self.side.part(first),
+        }
+    }
 
     fn solve_blocks<S: BlockSolver<T>>(
         &self,

@@ -6,6 +6,7 @@ mod drives;
 mod dyads;
 mod failures;
 mod four_bar;
+mod groups;
 mod inputs;
 mod lanes;
 mod motion;

@@ -208,6 +208,7 @@ impl Scalar for Counted {
 
 impl Real for Counted {
     type Word = u64;
+    type Register = Self;
 
     const EPSILON: Self = Counted(f64::EPSILON);
     const FALSE: u64 = 0;

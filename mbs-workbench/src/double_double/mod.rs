@@ -236,6 +236,7 @@ impl Scalar for DoubleDouble {
 
 impl Real for DoubleDouble {
     type Word = u64;
+    type Register = Self;
 
     /// 2⁻¹⁰⁴: twice the unit roundoff u², with a bit to spare for the errors of the operations.
     const EPSILON: Self = DoubleDouble::new(4.930_380_657_631_324e-32);

@@ -122,8 +122,14 @@ impl<S: Mechanism<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
 
 impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, M> for Fed<S> {
     type Factors = S::Factors;
+    type GroupNumber = f64;
+    type Group = Self;
 
     const BLOCK_BY_BLOCK: bool = S::BLOCK_BY_BLOCK;
+
+    fn group(&self, _: usize) -> Self {
+        self.clone()
+    }
 
     fn solve_blocks<B: BlockSolver<f64>>(
         &self,

@@ -208,6 +208,12 @@ pub fn enclosed(
     }
 }
 
+/// The designs in some lanes of a mechanism, from lane `__first` on.
+pub fn in_part(text: &Text, scenes: &Scenes) -> TokenStream {
+    let (name, fields) = (&text.header.name, converted(scenes, &text.header.runtime, part));
+    quote! { #name { #fields } }
+}
+
 /// A mechanism in double precision as one in the numbers `__U`.
 pub fn in_other_numbers(text: &Text, scenes: &Scenes) -> TokenStream {
     let (name, fields) = (&text.header.name, converted(scenes, &text.header.runtime, rounded));
@@ -278,6 +284,18 @@ fn lane(field: &Field, component: usize) -> String {
             format!("__mbs::Signal {{ {}, {}, {} }}", part("value"), part("rate"), part("acceleration"))
         }
         Role::Phase => format!("__mbs::Phase::lane({place}, __lane)"),
+    }
+}
+
+fn part(field: &Field, component: usize) -> String {
+    let place = format!("self.{}{}", field_name(&field.name.text), subscripts(component, &field.shape));
+    match field.role {
+        Role::Parameter | Role::Input => format!("T::part({place}, __first)"),
+        Role::InputWithRates => {
+            let part = |part: &str| format!("{part}: T::part({place}.{part}, __first)");
+            format!("__mbs::Signal {{ {}, {}, {} }}", part("value"), part("rate"), part("acceleration"))
+        }
+        Role::Phase => format!("__mbs::Phase::part({place}, __first)"),
     }
 }
 

@@ -7,7 +7,8 @@ use crate::diagnostics::Diagnostics;
 use crate::emit::rust::SceneFunctions;
 use crate::emit::rust::dynamic_trait;
 use crate::emit::rust::fields::{
-    access, constructors, enclosed, field_docs, field_type, function_docs, ident, in_other_numbers, markers,
+    access, constructors, enclosed, field_docs, field_type, function_docs, ident, in_other_numbers, in_part,
+    markers,
 };
 use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::generics::Generics;
@@ -15,6 +16,7 @@ use crate::emit::rust::scenes;
 use crate::emit::rust::tables::tables;
 use crate::emit::rust::view::{coordinates_view, outputs_view, stepper_alias};
 use crate::model::Model;
+use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
 use crate::syntax::Text;
 
@@ -72,7 +74,10 @@ fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> T
     let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
     let callable = Generics::of(text, scenes).callable(model, runtime);
     let m = model.rows.len();
-    let kinematic = part.square.then(|| kinematic(&name, (model, m), (bodies, &callable), runtime));
+    let kinematic = part.square.then(|| {
+        let group = group(text, scenes, scene, &lane);
+        kinematic(&name, (model, m), (bodies, &callable, &group), runtime)
+    });
     // Surplus rows leave multipliers open that only all rows together determine.
     let is_partitioned = model.dynamics.is_some() && !part.surplus;
     let partitioned = model.dynamics.as_ref().map(|_| match is_partitioned {
@@ -260,11 +265,35 @@ fn revealed(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>, m: usize) -
     }
 }
 
+/// The types and the function of `Kinematic` that take some lanes out of many. A function of the caller is known to take `T` and
+/// single numbers alone.
+fn group(text: &Text, scenes: &Scenes, scene: &Scene, lane: &TokenStream) -> TokenStream {
+    let runtime = &text.header.runtime;
+    let (number, group, first, value) = match scene.model.functions.as_slice() {
+        [] => {
+            let number = quote! { <T::Real as #runtime::Real>::Register };
+            let group = scenes::type_in(text, scenes, scene, &number);
+            let first = if scenes.shared.fields.is_empty() { "_first" } else { "__first" };
+            (number, group, first, in_part(text, scenes))
+        }
+        _ => {
+            (quote! { T::Real }, lane.clone(), "__first", quote! { #runtime::Mechanism::lane(self, __first) })
+        }
+    };
+    let first = quote::format_ident!("{first}");
+    quote! {
+        type GroupNumber = #number;
+        type Group = #group;
+        #[inline]
+        fn group(&self, #first: ::core::primitive::usize) -> Self::Group { #value }
+    }
+}
+
 /// `impl Kinematic` with the factors that it keeps.
 fn kinematic(
     name: &TokenStream,
     (model, m): (&Model, usize),
-    (bodies, generics): (&Bodies, &TokenStream),
+    (bodies, generics, group): (&Bodies, &TokenStream, &TokenStream),
     runtime: &TokenStream,
 ) -> TokenStream {
     let n = model.coordinates.len();
@@ -300,6 +329,7 @@ fn kinematic(
         impl<#generics> #runtime::Kinematic<T, #sizes> for #name {
             type Factors = __Factors<T>;
             #block_by_block
+            #group
             #[inline]
             fn solve_blocks<__S: #runtime::BlockSolver<T>>(
                 &self,

@@ -28,6 +28,9 @@ const NARROW: usize = if cfg!(target_feature = "avx") {
     1
 };
 
+/// `true` if registers have no instruction that chooses numbers by a mask: then bits are exchanged in fewer operations.
+const BY_BITS: bool = cfg!(all(target_feature = "sse2", not(target_feature = "sse4.1")));
+
 /// As [`WIDE`], in single precision.
 const WIDE_SINGLE: usize = if cfg!(target_feature = "avx") { 8 } else { NARROW_SINGLE };
 
@@ -264,7 +267,7 @@ where
         if cfg!(feature = "libm") {
             (*sine, *cosine) = angle.of_library();
         } else {
-            (*sine, *cosine) = angle.sin_cos::<Best, false>();
+            (*sine, *cosine) = angle.sin_cos::<Best, BY_BITS>();
             near &= angle.is_near();
         }
     }
