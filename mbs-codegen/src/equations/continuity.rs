@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use proc_macro2::Span;
 
-use super::{Dynamics, Equations, Row, Sparse};
+use super::{Dynamics, Equations, Row, Sparse, Sticking};
 use crate::diagnostics::Diagnostics;
 use crate::model::Model;
 use crate::symbolic::{Leaf, Node, NodeId};
@@ -132,7 +132,7 @@ fn demands(model: &Model, equations: &Equations) -> Vec<Demand> {
 }
 
 /// The functions of masses and forces.
-fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 17] {
+fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 18] {
     let some = |nodes: &[Option<NodeId>]| nodes.iter().copied().flatten().collect::<Vec<_>>();
     let entries = |matrix: &Sparse| matrix.iter().flatten().map(|(_, entry)| *entry).collect::<Vec<_>>();
     [
@@ -152,6 +152,7 @@ fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 17] {
         ("a derivative by a state", dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect()),
         ("an output of multipliers or states", dynamics.loads.clone()),
         ("the gap of a contact", dynamics.gaps.iter().flat_map(|gap| gap.roots()).collect()),
+        ("a friction", dynamics.sticking.iter().flat_map(Sticking::roots).collect()),
         ("the start", [some(&dynamics.start_states), some(&dynamics.start_rates)].concat()),
     ]
 }

@@ -10,6 +10,7 @@ use super::non_negative::{NonNegative, Of, signed};
 use super::normal_forces::{NormalForces, normal_forces};
 use super::second_moments::second_moments;
 use super::sparse::{Sparse, derivative, hessian, mirrored, products, transposed};
+use super::sticking::{Sticking, sticking};
 use super::sum::Sum;
 use super::{Row, again};
 use crate::model::dynamics::{Body, Dynamics as Declared, Rotation};
@@ -118,6 +119,8 @@ pub struct Dynamics {
     pub signed: Vec<NonNegative>,
     /// One a contact.
     pub gaps: Vec<Gap>,
+    /// One a friction with stiction.
+    pub sticking: Vec<Sticking>,
     /// Q contact by contact, where there are contacts.
     pub by_contact: Option<ByContact>,
     /// Time derivatives of the working ranges, by which parts of a motion can be enclosed. Given where the text calls no function and
@@ -176,6 +179,7 @@ impl Dynamics {
             roots.push(gap);
             roots.extend([rate, bound].into_iter().flatten());
         }
+        roots.extend(self.sticking.iter_mut().flat_map(Sticking::roots_mut));
         roots.extend(self.limit_rates.iter_mut().flatten().flatten());
         roots.extend(self.by_contact.iter_mut().flat_map(ByContact::roots_mut));
         roots
@@ -274,6 +278,7 @@ pub fn derive(
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
         signed: signed(g, bounded.into_iter()),
         gaps,
+        sticking: sticking(g, &declared.sticking, &of, clock, count),
         by_contact,
         limit_rates: Vec::new(),
         missing: Vec::new(),

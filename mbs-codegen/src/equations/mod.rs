@@ -25,6 +25,7 @@ mod second_moments;
 mod seen_tests;
 mod sparse;
 mod spatial_inertia;
+mod sticking;
 mod sum;
 pub mod turns;
 
@@ -40,6 +41,7 @@ use lower::Lowered;
 pub use lower::MARGIN;
 pub use non_negative::Of;
 pub use sparse::Sparse;
+pub use sticking::Sticking;
 
 /// All expressions of a model as nodes of one graph, in their order.
 pub fn lowered(model: &Model) -> (Graph, Vec<NodeId>) {

@@ -23,6 +23,8 @@ pub struct Dynamics {
     pub forces: Vec<Force>,
     /// Contacts, in the order of the text.
     pub contacts: Vec<Contact>,
+    /// Frictions with stiction, in the order of the text.
+    pub sticking: Vec<Sticking>,
     /// Energies that `potential` adds (J).
     pub potentials: Vec<Id>,
     /// Energies that `kinetic` adds (J).
@@ -131,6 +133,19 @@ pub struct Contact {
     pub gap: Id,
     /// Largest |second time derivative of the gap| while it is open (m/s²), of parameters.
     pub bound: Option<Id>,
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// A friction whose force is set-valued at rest.
+#[derive(Debug)]
+pub struct Sticking {
+    /// Its name.
+    pub name: String,
+    /// Length (m).
+    pub along: Id,
+    /// Largest force (N) with which it sticks.
+    pub limit: Id,
     /// The declaring token.
     pub span: Span,
 }

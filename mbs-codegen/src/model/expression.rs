@@ -37,6 +37,10 @@ pub enum Node {
     State(usize),
     /// The multiplier λ of a row by the row's index.
     Multiplier(usize),
+    /// Direction in which a friction with stiction slides by its index: 1, −1, or 0 where it sticks.
+    Sliding(usize),
+    /// Force along the length with which it sticks; 0 where it slides.
+    Holding(usize),
     /// A component of the force of a pin on the first of its bodies, by the pin's index.
     Pin(usize, usize),
     /// A function of one argument.
@@ -250,6 +254,14 @@ impl Id {
 }
 
 impl Node {
+    /// `true` for what the equations of motion alone know: states, multipliers, forces of pins, how friction sticks and slides.
+    pub fn is_of_motion(self) -> bool {
+        matches!(
+            self,
+            Node::State(_) | Node::Multiplier(_) | Node::Pin(..) | Node::Sliding(_) | Node::Holding(_)
+        )
+    }
+
     /// Its operands.
     pub fn operands(self) -> impl Iterator<Item = Id> {
         let (first, second) = match self {
@@ -259,6 +271,8 @@ impl Node {
             | Node::Variable(_)
             | Node::State(_)
             | Node::Multiplier(_)
+            | Node::Sliding(_)
+            | Node::Holding(_)
             | Node::Pin(..)
             | Node::Margin(_) => (None, None),
             Node::Unary(_, a) | Node::Rate(a, _) | Node::Call { argument: a, .. } | Node::Ratio(a, _) => {

@@ -1,7 +1,8 @@
 //! Friction laws → forces along a length.
 
-use super::dynamics::Action;
-use super::expression::Node;
+use super::dynamics::{Action, Sticking};
+use super::elaborator::Elaborator;
+use super::expression::{Id, Node};
 use super::forces_by_name::Force as Seen;
 use super::masses_and_forces::Given;
 use super::resolver::Resolver;
@@ -10,29 +11,85 @@ use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::Name;
 
 impl Resolver<'_> {
-    /// −(μ |N| tanh(ṡ/v₀) + c ṡ) along s: Coulomb's law, smooth below the speed v₀.
+    /// −(μ |N| tanh(ṡ/v₀) + c ṡ) along s: Coulomb's law, smooth below the speed v₀. With `sticks` the law is set-valued.
     ///
     /// Source: Andersson, Söderberg & Björklund 2007, the tanh model.
     pub(super) fn friction(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
         let field = |field: &str| given.scalar(field).ok_or(Fault);
         let (along, normal) = (field("along")?, field("normal")?);
-        let (coefficient, speed) = (field("coefficient")?, field("speed")?);
-        let force = self.elaborate(Reach::Force, |work| {
-            let span = name.span;
-            let rate = work.expressions.push(Node::Rate(along, 1));
-            let ratio = work.push_binary(Binary::Divide, rate, speed, span)?;
-            let direction = work.push_unary(Unary::Tanh, ratio, span)?;
-            let pressure = work.push_unary(Unary::Abs, normal, span)?;
-            let limit = work.push_binary(Binary::Multiply, coefficient, pressure, span)?;
-            let mut force = work.push_binary(Binary::Multiply, limit, direction, span)?;
-            if let Some(viscous) = given.scalar("viscous") {
-                let drag = work.push_binary(Binary::Multiply, viscous, rate, span)?;
-                force = work.push_binary(Binary::Add, force, drag, span)?;
-            }
-            work.push_unary(Unary::Negate, force, span)
-        })?;
+        let coefficient = field("coefficient")?;
+        let span = name.span;
+        let force = if let Some(most) = given.scalar("sticks") {
+            let index = self.dynamics().sticking.len();
+            let [limit, force] = self.elaborate(Reach::Force, |work| {
+                set_valued(work, index, [along, normal, coefficient, most], given, name)
+            })?;
+            self.dynamics().sticking.push(Sticking { name: full.clone(), along, limit, span });
+            force
+        } else {
+            let speed = field("speed")?;
+            self.elaborate(Reach::Force, |work| {
+                let rate = work.expressions.push(Node::Rate(along, 1));
+                let ratio = work.push_binary(Binary::Divide, rate, speed, span)?;
+                let direction = work.push_unary(Unary::Tanh, ratio, span)?;
+                let pressure = work.push_unary(Unary::Abs, normal, span)?;
+                let limit = work.push_binary(Binary::Multiply, coefficient, pressure, span)?;
+                let force = work.push_binary(Binary::Multiply, limit, direction, span)?;
+                let force = with_drag(work, force, rate, given, name)?;
+                work.push_unary(Unary::Negate, force, span)
+            })?
+        };
         self.names.seen.define(&name.text, Seen::Friction { along, force });
         self.force(name, full, Action::Work(vec![(force, along)]));
         Ok(())
     }
+}
+
+/// Adds c ṡ, where it is given.
+fn with_drag(
+    work: &mut Elaborator<'_>,
+    force: Id,
+    rate: Id,
+    given: &Given,
+    name: &Name,
+) -> Result<Id, Fault> {
+    let Some(viscous) = given.scalar("viscous") else { return Ok(force) };
+    let drag = work.push_binary(Binary::Multiply, viscous, rate, name.span)?;
+    work.push_binary(Binary::Add, force, drag, name.span)
+}
+
+/// The largest force μₛ |N| of a friction with stiction, and its force h − σ μ |N| − c ṡ.
+///
+/// σ is the direction of sliding, h the force while it sticks. μ is the coefficient, or falls from μₛ to it as
+/// exp(−(ṡ/v)²) where a speed is given. A μₛ below the coefficient counts as the coefficient.
+/// Source: Bo & Pavelescu 1982, the exponential model with the exponent 2.
+fn set_valued(
+    work: &mut Elaborator<'_>,
+    index: usize,
+    [along, normal, coefficient, most]: [Id; 4],
+    given: &Given,
+    name: &Name,
+) -> Result<[Id; 2], Fault> {
+    let span = name.span;
+    let rate = work.expressions.push(Node::Rate(along, 1));
+    let pressure = work.push_unary(Unary::Abs, normal, span)?;
+    let most = work.push_binary(Binary::Max, most, coefficient, span)?;
+    let limit = work.push_binary(Binary::Multiply, most, pressure, span)?;
+    let mut slides = coefficient;
+    if let Some(speed) = given.scalar("speed") {
+        let ratio = work.push_binary(Binary::Divide, rate, speed, span)?;
+        let square = work.push_binary(Binary::Multiply, ratio, ratio, span)?;
+        let exponent = work.push_unary(Unary::Negate, square, span)?;
+        let share = work.push_unary(Unary::Exp, exponent, span)?;
+        let rise = work.push_binary(Binary::Subtract, most, coefficient, span)?;
+        let rise = work.push_binary(Binary::Multiply, rise, share, span)?;
+        slides = work.push_binary(Binary::Add, coefficient, rise, span)?;
+    }
+    let resistance = work.push_binary(Binary::Multiply, slides, pressure, span)?;
+    let direction = work.expressions.push(Node::Sliding(index));
+    let force = work.push_binary(Binary::Multiply, resistance, direction, span)?;
+    let force = with_drag(work, force, rate, given, name)?;
+    let holding = work.expressions.push(Node::Holding(index));
+    let force = work.push_binary(Binary::Subtract, holding, force, span)?;
+    Ok([limit, force])
 }

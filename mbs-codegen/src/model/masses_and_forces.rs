@@ -95,6 +95,7 @@ pub fn known(element: Element) -> Vec<Known> {
             ("coefficient", scalar(Dimension::NUMBER), true),
             ("speed", FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND)), true),
             ("viscous", scalar(per_metre.times(Dimension::SECOND)), false),
+            ("sticks", scalar(Dimension::NUMBER), false),
         ],
         Element::Contact => vec![
             ("gap", FieldKind::Scalar(Dimension::METRE, Reach::Position), true),
@@ -238,7 +239,9 @@ impl Resolver<'_> {
                 Err(Fault) => faulty = true,
             }
         }
-        let is_missing = |name: &str| !is_given(name) && !misspelled.contains(&name);
+        // Friction with stiction needs no speed at which it is smooth.
+        let spared = |name: &str| name == "speed" && is_given("sticks");
+        let is_missing = |name: &str| !is_given(name) && !misspelled.contains(&name) && !spared(name);
         for (missing, ..) in known.iter().filter(|(known, _, needed)| *needed && is_missing(known)) {
             let message = format!("`{}` has no field `{missing}`", name.text);
             let _reported = self.fault(name.span, message, format!("write `{missing}: …` in its braces"));
@@ -302,7 +305,7 @@ impl Resolver<'_> {
                 };
                 return Err(self.fault(value.span, message, help));
             }
-            let free = |node| !matches!(node, Node::Coordinate(_) | Node::State(_) | Node::Multiplier(_));
+            let free = |node: Node| !matches!(node, Node::Coordinate(_)) && !node.is_of_motion();
             if matches!(kind, FieldKind::Vector(_)) && varies(self, item.id, free) {
                 let message = format!("{user} depends on where the mechanism is");
                 return Err(self.fault(value.span, message, "write a field of forces as `potential V = …;`"));
@@ -391,7 +394,7 @@ impl Resolver<'_> {
             let scalar = work.scalar(&value, "an energy", value.span)?;
             Ok::<_, Fault>((scalar.id, value.span))
         })?;
-        let stateless = |node| !matches!(node, Node::State(_) | Node::Multiplier(_));
+        let stateless = |node: Node| !node.is_of_motion();
         if kind != Energy::Dissipation && !self.model.made_of(value, stateless) {
             let message = format!("the energy `{}` uses a state or a multiplier", name.text);
             let help =

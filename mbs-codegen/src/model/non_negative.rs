@@ -19,7 +19,9 @@ impl Least {
     /// Least value of a field, if it has one.
     pub fn of(field: &str) -> Option<Self> {
         match field {
-            "mass" | "inertia" | "stiffness" | "damping" | "coefficient" | "viscous" => Some(Least::Zero),
+            "mass" | "inertia" | "stiffness" | "damping" | "coefficient" | "viscous" | "sticks" => {
+                Some(Least::Zero)
+            }
             "speed" | "depth" | "exponent" | "bound" | "restitution" | "approach" => Some(Least::AboveZero),
             _ => None,
         }
@@ -89,7 +91,7 @@ fn wrong(signed: &NonNegative, value: f64) -> Option<Diagnostic> {
     };
     let help = match *field {
         "stiffness" => "a force that pushes away from its rest is an energy of its own: `potential V = …;`",
-        "damping" | "coefficient" | "viscous" => {
+        "damping" | "coefficient" | "viscous" | "sticks" => {
             "it would feed energy in; what drives is a force of its own: `force f: … on P;`"
         }
         "speed" => "friction is smooth below this speed: write a small one, `speed: 1mm/1s`",

@@ -24,7 +24,13 @@ impl Elaborator<'_> {
         let refused = |node| {
             matches!(
                 node,
-                Node::Rate(..) | Node::Multiplier(_) | Node::Pin(..) | Node::Margin(_) | Node::Ratio(..)
+                Node::Rate(..)
+                    | Node::Multiplier(_)
+                    | Node::Pin(..)
+                    | Node::Margin(_)
+                    | Node::Ratio(..)
+                    | Node::Sliding(_)
+                    | Node::Holding(_)
             )
         };
         for item in &z.items {

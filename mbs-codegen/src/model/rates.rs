@@ -22,7 +22,7 @@ impl Elaborator<'_> {
         let inside = |wanted: fn(Node) -> bool| {
             self.expressions.iter().any(|(id, node)| inner.get(id.index()) == Some(&true) && wanted(node))
         };
-        if inside(|node| matches!(node, Node::State(_) | Node::Multiplier(_) | Node::Pin(..))) {
+        if inside(Node::is_of_motion) {
             return Err(self.fault(
                 span,
                 format!("`{name}` of a state or of a multiplier is not known"),

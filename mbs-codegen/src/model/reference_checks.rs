@@ -24,9 +24,7 @@ impl Resolver<'_> {
     pub(super) fn check_reference(&mut self, value: &Value) -> Result<(), Fault> {
         let refers = |node| matches!(node, Node::Margin(_) | Node::Ratio(..));
         for item in value.items.iter().filter(|item| self.contains(item.id, refers)) {
-            let (message, help) = if self.contains(item.id, |node| {
-                matches!(node, Node::State(_) | Node::Multiplier(_) | Node::Pin(..))
-            }) {
+            let (message, help) = if self.contains(item.id, Node::is_of_motion) {
                 (
                     "an output has a margin or ratio and a multiplier or state",
                     "write two outputs: multipliers and states are known to the equations of motion alone",

@@ -248,7 +248,7 @@ impl Resolver<'_> {
         for (component, item) in component_names(&base, &value.shape).zip(&value.items) {
             let unit = kind.unit.text.clone();
             let output = Output { name: component, unit, value: item.id, span: name.span };
-            let plain = |node| !matches!(node, Node::State(_) | Node::Multiplier(_) | Node::Pin(..));
+            let plain = |node: Node| !node.is_of_motion();
             let is_load = self.model.dynamics.is_some() && !self.model.made_of(item.id, plain);
             match &mut self.model.dynamics {
                 Some(dynamics) if is_load => dynamics.loads.push(output),

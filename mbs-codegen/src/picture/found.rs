@@ -109,9 +109,8 @@ impl Outside {
     pub fn of(node: Node) -> Option<Self> {
         match node {
             Node::Call { .. } => Some(Outside::Function),
-            Node::State(_) | Node::Multiplier(_) | Node::Pin(..) | Node::Margin(_) | Node::Ratio(..) => {
-                Some(Outside::Motion)
-            }
+            Node::Margin(_) | Node::Ratio(..) => Some(Outside::Motion),
+            node if node.is_of_motion() => Some(Outside::Motion),
             _ => None,
         }
     }

@@ -204,7 +204,12 @@ impl Picture {
             Leaf::Position(index) => of(position, index),
             Leaf::Velocity(index) => of(velocity, index),
             Leaf::Acceleration(index) => of(acceleration, index),
-            Leaf::State(_) | Leaf::Multiplier(_) | Leaf::Direction(_) | Leaf::Given(..) => f64::NAN,
+            Leaf::State(_)
+            | Leaf::Multiplier(_)
+            | Leaf::Direction(_)
+            | Leaf::Sliding(_)
+            | Leaf::Holding(_)
+            | Leaf::Given(..) => f64::NAN,
         };
         let all: Vec<NodeId> = self.roots.iter().flatten().copied().collect();
         let mut values = evaluate(&self.graph, &all, leaf).into_iter();

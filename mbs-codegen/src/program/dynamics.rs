@@ -3,7 +3,7 @@
 use super::contacts::{ContactProgram, ContactRoots};
 use super::schedule::Section;
 use crate::equations::normal_forces::NormalForces;
-use crate::equations::{Dynamics, Gap, Sparse};
+use crate::equations::{Dynamics, Gap, Sparse, Sticking};
 use crate::symbolic::{Graph, NodeId};
 
 /// One section a function.
@@ -45,6 +45,8 @@ pub struct DynamicsProgram {
     pub loads: Section,
     /// Gaps of contacts with their rates.
     pub gaps: Section,
+    /// Rows of frictions with stiction.
+    pub sticking: Section,
     /// Rates of working ranges.
     pub limit_rates: Section,
     /// Forces by contact, where there are contacts.
@@ -77,6 +79,7 @@ pub struct Roots {
     slopes: Vec<NodeId>,
     loads: Vec<NodeId>,
     gaps: Vec<NodeId>,
+    sticking: Vec<NodeId>,
     limit_rates: Vec<NodeId>,
     by_contact: Option<ContactRoots>,
     start_states: Vec<NodeId>,
@@ -107,6 +110,7 @@ impl Roots {
             slopes: dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect(),
             loads: dynamics.loads.clone(),
             gaps: dynamics.gaps.iter().flat_map(Gap::roots).collect(),
+            sticking: dynamics.sticking.iter().flat_map(Sticking::roots).collect(),
             limit_rates: dynamics.limit_rates.iter().flatten().copied().flatten().collect(),
             by_contact: ContactRoots::of(dynamics),
             start_states: some(&dynamics.start_states),
@@ -123,7 +127,7 @@ impl Roots {
 
     /// Functions that some methods call, or that are not called in every step: no value is kept for them alone.
     pub fn rare(&self) -> impl Iterator<Item = &[NodeId]> {
-        let all: [&[NodeId]; 14] = [
+        let all: [&[NodeId]; 15] = [
             &self.force_q,
             &self.force_qd,
             &self.force_lambda,
@@ -137,6 +141,7 @@ impl Roots {
             &self.slopes,
             &self.loads,
             &self.gaps,
+            &self.sticking,
             &self.limit_rates,
         ];
         let by_contact = self.by_contact.iter();
@@ -177,6 +182,7 @@ impl Roots {
             slopes: section(&self.slopes),
             loads: section(&self.loads),
             gaps: section(&self.gaps),
+            sticking: section(&self.sticking),
             limit_rates: section(&self.limit_rates),
             by_contact: self.by_contact.as_ref().map(|roots| roots.order(graph, &section, behind)),
             start_states: early(&self.start_states),

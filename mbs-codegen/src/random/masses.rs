@@ -79,7 +79,12 @@ impl Numbers {
                 Node::Call { function, order, argument } => {
                     numbers[argument.index()].call(function as u32, order)
                 }
-                Node::Rate(..) | Node::Pin(..) | Node::Margin(_) | Node::Ratio(..) => {
+                Node::Rate(..)
+                | Node::Pin(..)
+                | Node::Margin(_)
+                | Node::Ratio(..)
+                | Node::Sliding(_)
+                | Node::Holding(_) => {
                     unreachable!("random texts with masses use no `der2`, no pin, no margin and no ratio")
                 }
             };

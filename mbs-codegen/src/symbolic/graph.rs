@@ -36,6 +36,10 @@ pub enum Leaf {
     Multiplier(u32),
     /// Component of any vector that a matrix is applied to.
     Direction(u32),
+    /// Direction in which a friction slides: constant within a step, given from outside.
+    Sliding(u32),
+    /// Force with which it sticks, given from outside.
+    Holding(u32),
     /// Computed outside, from the position: known with the accelerations.
     Given(u32, u32),
 }
@@ -136,9 +140,14 @@ impl Graph {
             Node::Constant(_) => Stage::Constant,
             Node::Leaf(Leaf::Parameter(_)) => Stage::Parameter,
             Node::Leaf(Leaf::Input(_) | Leaf::Time | Leaf::Position(_)) => Stage::Position,
-            Node::Leaf(Leaf::Velocity(_) | Leaf::State(_) | Leaf::Multiplier(_) | Leaf::Direction(_)) => {
-                Stage::Velocity
-            }
+            Node::Leaf(
+                Leaf::Velocity(_)
+                | Leaf::State(_)
+                | Leaf::Multiplier(_)
+                | Leaf::Direction(_)
+                | Leaf::Sliding(_)
+                | Leaf::Holding(_),
+            ) => Stage::Velocity,
             Node::Leaf(Leaf::Acceleration(_) | Leaf::Given(..)) => Stage::Acceleration,
             // The value of a function is known with the design, not before, even at a number.
             Node::Call { argument, .. } => self.stage(argument).max(Stage::Parameter),

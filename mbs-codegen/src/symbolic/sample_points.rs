@@ -16,6 +16,8 @@ pub fn scattered(leaf: Leaf, trial: usize) -> f64 {
         Leaf::Multiplier(index) => (8, index),
         Leaf::Direction(index) => (9, index),
         Leaf::Given(group, index) => (10 + u64::from(group), index),
+        Leaf::Sliding(index) => (1 << 40, index),
+        Leaf::Holding(index) => (1 << 41, index),
     };
     fraction(kind, index, trial)
 }

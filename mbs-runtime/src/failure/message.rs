@@ -253,6 +253,25 @@ impl fmt::Display for Failure {
                     function.name, function.line
                 )
             }
+            FailureKind::Stiction { friction } => write!(
+                f,
+                "friction `{}` (line {}) sticks, and has no slopes at rest: take an explicit method, as `DormandPrince8`, or write \
+                 `speed` in place of `sticks` for a smooth law",
+                friction.name, friction.line
+            ),
+            FailureKind::StickingUndecided { friction } => write!(
+                f,
+                "friction `{}` (line {}) is undecided at t = {time} s: with the forces there it can neither stick nor slide, or it shares \
+                 a force with others in a ratio that is not known; check coefficients and normal forces, and leave out frictions along \
+                 lengths that follow from each other",
+                friction.name, friction.line
+            ),
+            FailureKind::Chatter { friction, parts } => write!(
+                f,
+                "friction `{}` (line {}), or another one, sticks and slides more than {parts} times within the step from t = {time} s: \
+                 take shorter steps",
+                friction.name, friction.line
+            ),
             FailureKind::MechanismMismatch { mechanism } => {
                 write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")
             }
@@ -321,6 +340,9 @@ mod tests {
             FailureKind::Ambiguous { row: ROW, solutions: 2, all: true }.at(time),
             FailureKind::Ambiguous { row: ROW, solutions: 1, all: false }.at(time),
             FailureKind::SharedNormalForce { row: ROW }.at(time),
+            FailureKind::Stiction { friction: ROW }.without_time(),
+            FailureKind::StickingUndecided { friction: ROW }.at(time),
+            FailureKind::Chatter { friction: ROW, parts: 64 }.at(time),
             FailureKind::NoStateEquilibrium { state: ROW }.at(time),
             FailureKind::StatesUnknown { state: ROW }.at(time),
         ];

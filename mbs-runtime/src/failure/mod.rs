@@ -200,6 +200,24 @@ pub enum FailureKind {
         /// A row that shares the force.
         row: &'static Entry,
     },
+    /// Friction with stiction has no slopes at rest, which the method or analysis needs.
+    Stiction {
+        /// The friction.
+        friction: &'static Entry,
+    },
+    /// No way of sticking and sliding is consistent with the forces at this time, or frictions along lengths that follow from each other
+    /// share a force in a ratio that is not known.
+    StickingUndecided {
+        /// A friction that may stick or slide.
+        friction: &'static Entry,
+    },
+    /// Friction sticks and slides more often within one step than a step is divided.
+    Chatter {
+        /// The first friction with stiction.
+        friction: &'static Entry,
+        /// Parts that the step was divided into.
+        parts: u32,
+    },
     /// A step that is 0, negative, no number, or too small to change the time.
     InvalidStep {
         /// The step (s).
@@ -371,6 +389,7 @@ impl FailureKind {
             | FailureKind::Unreachable { .. }
             | FailureKind::StatesUnknown { .. }
             | FailureKind::NotSmooth { .. }
+            | FailureKind::Stiction { .. }
             | FailureKind::MechanismMismatch { .. } => FailureSource::Input,
             FailureKind::NotConverged { .. }
             | FailureKind::NotFollowed { .. }
@@ -387,8 +406,10 @@ impl FailureKind {
             FailureKind::FrictionLocked { .. }
             | FailureKind::Ambiguous { .. }
             | FailureKind::SharedNormalForce { .. }
+            | FailureKind::StickingUndecided { .. }
             | FailureKind::SingularMass { .. } => FailureSource::Forces,
             FailureKind::Unbounded { .. }
+            | FailureKind::Chatter { .. }
             | FailureKind::EnergyGain { .. }
             | FailureKind::OutOfReach { .. }
             | FailureKind::Undecided { .. }

@@ -6,6 +6,7 @@ use crate::mechanism::limit::Limit;
 use crate::mechanism::margin::Margin;
 use crate::mechanism::normal_forces::WithNormalForces;
 use crate::mechanism::outcome::Outcome;
+use crate::mechanism::stiction::{Grip, WithFrictionRows};
 use crate::mechanism::transformed::Transformed;
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Scalar;
@@ -157,6 +158,33 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, 
     #[inline]
     fn evaluated_mut(_parameters: &mut Self::Parameters) -> &mut [bool] {
         &mut []
+    }
+
+    /// Frictions with stiction, in the order of [`friction_rows`](Self::friction_rows).
+    const FRICTIONS: &'static [Entry] = &[];
+    /// How they stick or slide, in the order of [`FRICTIONS`](Self::FRICTIONS). [`force`](Self::force) has the friction of those that
+    /// slide and the [`Grip::force`] of those that stick.
+    #[inline]
+    fn grips(_parameters: &Self::Parameters) -> &[Grip<T>] {
+        &[]
+    }
+    /// The same, to be changed.
+    #[inline]
+    fn grips_mut(_parameters: &mut Self::Parameters) -> &mut [Grip<T>] {
+        &mut []
+    }
+    /// Result of `see` on their rows.
+    #[inline]
+    fn friction_rows<V: WithFrictionRows<T, N>>(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _qd: &[T; N],
+        _states: &Self::States,
+        _lambda: &[T; M],
+        see: V,
+    ) -> V::Output {
+        see.at::<0>(&[])
     }
 
     /// Result of `see` on the mechanism in interval arithmetic, at the present parameters and inputs. `None` where the text calls

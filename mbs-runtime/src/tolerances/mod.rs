@@ -20,6 +20,7 @@ pub(crate) mod forces;
 pub(crate) mod motion;
 pub(crate) mod positions;
 pub(crate) mod singular;
+pub(crate) mod stiction;
 #[cfg(test)]
 mod tests;
 

@@ -292,7 +292,7 @@ pub fn study(
     let mut peers = Vec::new();
     let compared = make(&values);
     let doubles = match &compared {
-        Comparable::Still => Vec::new(),
+        Comparable::Still | Comparable::Sticks(_) => Vec::new(),
         Comparable::Driven(mechanism) => mechanism.doubles.clone(),
         Comparable::Moved(mechanism) => mechanism.doubles.clone(),
     };
@@ -308,6 +308,12 @@ pub fn study(
             let name = target.name();
             return Err(CommandError::Usage(without(format!(
                 "`{name}` has no motion: its rows leave coordinates free, and it has no masses"
+            ))));
+        }
+        Comparable::Sticks(friction) => {
+            return Err(CommandError::Usage(without(format!(
+                "friction `{friction}` sticks, and no reference solution follows it; compare the smooth law, with `speed` in place \
+                 of `sticks`"
             ))));
         }
         Comparable::Driven(_) if arguments.is_for_forces() => return Err(driven(&target)),

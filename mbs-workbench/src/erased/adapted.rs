@@ -3,7 +3,7 @@
 //! The motion is the same, so a method must find the same one. The elimination that the compiler chose for the text takes no part:
 //! the blocks are not those of the text, and all entries count.
 
-use mbs_runtime::dynamics::Transformed;
+use mbs_runtime::dynamics::{FrictionRow, Grip, Transformed, WithFrictionRows};
 use mbs_runtime::{
     BlockSolver, Dynamic, DynamicState, Energy, Entry, FunctionEntry, Gap, Limit, Margin, Mechanism,
     MissingSlope, NonNegative, Outcome, Partitioned, Reference, Scalar, StateSlope,
@@ -219,6 +219,25 @@ where
     }
 }
 
+/// Rows of frictions with their gradients in the adapted coordinates.
+struct AdaptedRows<'a, V, const N: usize, const M: usize> {
+    adaption: &'a Adaption<N, M>,
+    see: V,
+}
+
+impl<V, T, const N: usize, const M: usize> WithFrictionRows<T, N> for AdaptedRows<'_, V, N, M>
+where
+    V: WithFrictionRows<T, N>,
+    T: Scalar,
+{
+    type Output = V::Output;
+
+    fn at<const K: usize>(self, rows: &[FrictionRow<T, N>; K]) -> V::Output {
+        let adapted = rows.map(|row| FrictionRow { gradient: self.adaption.force(&row.gradient), ..row });
+        self.see.at(&adapted)
+    }
+}
+
 impl<S, T, const N: usize, const M: usize> Dynamic<T, N, M> for Adapted<S, N, M>
 where
     S: Dynamic<T, N, M>,
@@ -235,6 +254,7 @@ where
     const FORCES: &'static [Entry] = S::FORCES;
     const LOADS: &'static [Entry] = S::LOADS;
     const CONTACTS: &'static [Entry] = S::CONTACTS;
+    const FRICTIONS: &'static [Entry] = S::FRICTIONS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     fn gaps(
@@ -251,6 +271,25 @@ where
     }
     fn evaluated_mut(parameters: &mut Self::Parameters) -> &mut [bool] {
         S::evaluated_mut(parameters)
+    }
+    fn grips(parameters: &Self::Parameters) -> &[Grip<T>] {
+        S::grips(parameters)
+    }
+    fn grips_mut(parameters: &mut Self::Parameters) -> &mut [Grip<T>] {
+        S::grips_mut(parameters)
+    }
+    fn friction_rows<V: WithFrictionRows<T, N>>(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        qd: &[T; N],
+        states: &Self::States,
+        lambda: &[T; M],
+        see: V,
+    ) -> V::Output {
+        let (qd, lambda) = (self.adaption.direction(qd), self.adaption.multipliers(lambda));
+        let see = AdaptedRows { adaption: &self.adaption, see };
+        self.mechanism.friction_rows(parameters, position, &qd, states, &lambda, see)
     }
     fn limit_rates(
         &self,

@@ -15,6 +15,8 @@ use crate::setting::Numbers;
 pub enum Comparable {
     /// Its rows leave it free and nothing moves it.
     Still,
+    /// Friction with stiction, by its name: reference solutions are of forces that are functions of the state.
+    Sticks(&'static str),
     /// Drives move it.
     Driven(Box<DrivenCosts>),
     /// Forces move it.
@@ -25,7 +27,7 @@ impl Comparable {
     /// With the names of functions that exist in `f64` alone.
     pub fn with_doubles(mut self, names: Vec<&'static str>) -> Self {
         match &mut self {
-            Comparable::Still => {}
+            Comparable::Still | Comparable::Sticks(_) => {}
             Comparable::Driven(mechanism) => mechanism.doubles = names,
             Comparable::Moved(mechanism) => mechanism.doubles = names,
         }
@@ -117,6 +119,7 @@ where
     let single = InNumbers::<f32>::in_numbers(mechanism).reveal(InOne::<f32>(PhantomData));
     match InNumbers::<D>::in_numbers(mechanism).reveal(InExact) {
         ExactForm::Still => Comparable::Still,
+        ExactForm::Sticks(friction) => Comparable::Sticks(friction),
         ExactForm::Moved(exact) => {
             let runs = [(Numbers::Double, double.moved), (Numbers::Single, single.moved)];
             let runs = runs.into_iter().filter_map(|(numbers, runs)| Some((numbers, runs?))).collect();
@@ -149,8 +152,18 @@ where
 /// Form of a mechanism in double-double numbers.
 enum ExactForm {
     Still,
+    Sticks(&'static str),
     Driven(Box<dyn ExactPositions>),
     Moved(Box<dyn ExactEquations>),
+}
+
+impl ExactForm {
+    fn moved<S: Dynamic<D, N, M> + 'static, const N: usize, const M: usize>(mechanism: S) -> Self {
+        match S::FRICTIONS.first() {
+            Some(friction) => ExactForm::Sticks(friction.name),
+            None => ExactForm::Moved(Box::new(Exact::<S, N, M>::of(mechanism))),
+        }
+    }
 }
 
 struct InExact;
@@ -180,7 +193,7 @@ impl<S: 'static> Visitor<S, D> for InExact {
     where
         S: Dynamic<D, N, M> + Partitioned<D, N, M>,
     {
-        ExactForm::Moved(Box::new(Exact::<S, N, M>::of(mechanism)))
+        ExactForm::moved(mechanism)
     }
     fn large_driven<const N: usize, const M: usize>(self, mechanism: S) -> ExactForm
     where
@@ -192,7 +205,7 @@ impl<S: 'static> Visitor<S, D> for InExact {
     where
         S: Dynamic<D, N, M> + Partitioned<D, N, M>,
     {
-        ExactForm::Moved(Box::new(Exact::<S, N, M>::of(mechanism)))
+        ExactForm::moved(mechanism)
     }
 }
 

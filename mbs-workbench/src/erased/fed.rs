@@ -1,6 +1,6 @@
 //! A mechanism whose inputs follow courses over the time.
 
-use mbs_runtime::dynamics::{Transformed, WithNormalForces};
+use mbs_runtime::dynamics::{Grip, Transformed, WithFrictionRows, WithNormalForces};
 use mbs_runtime::{
     BlockSolver, Dynamic, DynamicState, Energy, Entry, FunctionEntry, Gap, Kinematic, Limit, Margin,
     Mechanism, MissingSlope, NonNegative, Outcome, Partitioned, Reference, Solved,
@@ -203,6 +203,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     const FORCES: &'static [Entry] = S::FORCES;
     const LOADS: &'static [Entry] = S::LOADS;
     const CONTACTS: &'static [Entry] = S::CONTACTS;
+    const FRICTIONS: &'static [Entry] = S::FRICTIONS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     // `enclosed` stays `None`: intervals know an input by its value and its rates at the start of a step.
@@ -235,6 +236,23 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     }
     fn evaluated_mut(parameters: &mut S::Parameters) -> &mut [bool] {
         S::evaluated_mut(parameters)
+    }
+    fn grips(parameters: &S::Parameters) -> &[Grip<f64>] {
+        S::grips(parameters)
+    }
+    fn grips_mut(parameters: &mut S::Parameters) -> &mut [Grip<f64>] {
+        S::grips_mut(parameters)
+    }
+    fn friction_rows<V: WithFrictionRows<f64, N>>(
+        &self,
+        parameters: &S::Parameters,
+        position: &S::Position,
+        qd: &[f64; N],
+        states: &S::States,
+        lambda: &[f64; M],
+        see: V,
+    ) -> V::Output {
+        self.mechanism.friction_rows(parameters, position, qd, states, lambda, see)
     }
     fn normal_forces<V: WithNormalForces<f64, N, M>>(
         &self,

@@ -77,7 +77,9 @@ where
         let array = |values: &[f64]| <[f64; N]>::try_from(values).ok();
         let (q, qd, qdd) = (array(&state.q)?, array(&state.qd)?, array(&state.qdd)?);
         let lambda = <[f64; M]>::try_from(loads.lambda.as_slice()).ok()?;
-        let p = mechanism.parameters();
+        let mut p = mechanism.parameters();
+        // The law of sliding forwards, as the oracle has it.
+        S::grips_mut(&mut p).iter_mut().for_each(|grip| grip.direction = 1.0);
         let mut z = mechanism.start_states(&p);
         for (slot, value) in z.as_mut().iter_mut().zip(&loads.states) {
             *slot = *value;

@@ -248,7 +248,7 @@ const PIECES: usize = 16;
 
 fn values<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(run: &Run<S, N, M>) -> Vec<f64> {
     let mechanism = run.mechanism();
-    let parameters = mechanism.parameters();
+    let parameters = run.parameters_with_forces();
     let position = mechanism.position(&parameters, run.q(), run.t());
     let moving = DynamicState { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
     observed(mechanism, (&parameters, &position), &moving).outputs

@@ -120,7 +120,7 @@ where
     R: Real,
 {
     let mechanism = run.mechanism();
-    let parameters = mechanism.parameters();
+    let parameters = run.parameters_with_forces();
     let position = mechanism.position(&parameters, run.q(), run.t());
     let moving = DynamicState { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
     let Observed { reaction, energy, kinetic, outputs } =

@@ -202,6 +202,9 @@ fn operation(model: &Model, node: Node) -> String {
         Node::Variable(index) => format!("v[{index}]"),
         Node::State(index) => format!("z[{index}]"),
         Node::Multiplier(index) => format!("l[{index}]"),
+        // The law of sliding forwards; the mode is the program's alone.
+        Node::Sliding(_) => "ca.SX(1)".into(),
+        Node::Holding(_) => "ca.SX(0)".into(),
         Node::Pin(pin, component) => format!("pins[{}]", 2 * pin + component),
         Node::Rate(a, 1) => format!("der({})", v(a)),
         Node::Rate(a, _) => format!("der(der({}))", v(a)),

@@ -237,6 +237,8 @@ impl<'a> Printer<'a> {
             Leaf::Multiplier(index) | Leaf::Direction(index) => {
                 (self.notation.name(&format!("lambda.{index}"), 0), Rank::Rate)
             }
+            Leaf::Sliding(index) => (self.notation.name(&format!("sigma.{index}"), 0), Rank::Rate),
+            Leaf::Holding(index) => (self.notation.name(&format!("h.{index}"), 0), Rank::Rate),
             // Occurs in outputs alone, which have no formulas here.
             Leaf::Given(..) => ("?".into(), Rank::Variable),
         };

@@ -29,6 +29,7 @@ pub fn implementation(
         signed,
         missing,
         gaps,
+        sticking,
         limit_rates,
         mass,
         mass_times,
@@ -113,6 +114,7 @@ pub fn implementation(
             #signed
             #missing
             #gaps
+            #sticking
             #limit_rates
             #enclosed
             #[inline]

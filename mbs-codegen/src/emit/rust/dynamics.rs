@@ -8,6 +8,7 @@ use quote::{quote, quote_spanned};
 use crate::emit::rust::code::{array, block, body, lets, matrix};
 use crate::emit::rust::contacts::{self, Blocks};
 use crate::emit::rust::scope::{Scope, number};
+use crate::emit::rust::sticking;
 use crate::equations::deferred::Slopes;
 use crate::equations::normal_forces::{NormalForces, NormalFunction};
 use crate::equations::{Dynamics, Equations, Gap, Of, Slope, Sparse};
@@ -27,6 +28,8 @@ pub struct DynamicBodies {
     pub missing: TokenStream,
     /// Not a body: the table of contacts and the function of their gaps, where there are any.
     pub gaps: TokenStream,
+    /// Not a body: the table of frictions with stiction and the function of their rows, where there are any.
+    pub sticking: TokenStream,
     /// Not a body: the function of the rates of working ranges, where there are any.
     pub limit_rates: TokenStream,
     pub mass: TokenStream,
@@ -87,6 +90,7 @@ pub fn bodies(
         signed: signed(dynamics, program, early, runtime),
         missing: missing(dynamics, scope.model, runtime),
         gaps: gaps(dynamics, program, scope, runtime),
+        sticking: sticking::items(&dynamics.sticking, &program.sticking, scope, runtime),
         limit_rates: limit_rates(dynamics, program, scope, runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
         mass_times: of(&program.mass_times, vector(&dynamics.mass_times, scope)),
@@ -233,6 +237,12 @@ fn missing(dynamics: &Dynamics, model: &Model, runtime: &TokenStream) -> TokenSt
 pub fn contacts(equations: &Equations) -> Option<usize> {
     let dynamics = equations.dynamics.as_ref()?;
     dynamics.by_contact.as_ref().map(|_| dynamics.gaps.len())
+}
+
+/// Number of frictions with stiction, where there are any.
+pub fn frictions(equations: &Equations) -> Option<usize> {
+    let count = equations.dynamics.as_ref()?.sticking.len();
+    (count > 0).then_some(count)
 }
 
 /// The contacts: their table, and the function that evaluates their gaps.

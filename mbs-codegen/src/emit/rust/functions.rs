@@ -32,6 +32,8 @@ pub struct Bodies {
     pub kept_parameters: usize,
     /// Number of contacts, where their forces are evaluated one by one.
     pub contacts: Option<usize>,
+    /// Number of frictions with stiction, where there are any.
+    pub frictions: Option<usize>,
     pub kept_position: usize,
     pub parameters: TokenStream,
     pub guess: TokenStream,
@@ -105,9 +107,10 @@ pub fn bodies(
     let early = Scope { parameters: Some(&program.parameters.fields), ..bare };
     let scope = Scope { position: Some(&program.position.fields), ..early };
     let is_long = long::is_long(program, lengths);
-    let contacts = dynamics::contacts(equations);
+    let (contacts, frictions) = (dynamics::contacts(equations), dynamics::frictions(equations));
+    let memory = memory(contacts, frictions);
     let mut emitter =
-        Emitter { scope: &scope, early: &early, is_long, contacts, parts: String::new(), runtime };
+        Emitter { scope: &scope, early: &early, is_long, memory, parts: String::new(), runtime };
     let rows = |part: fn(&crate::equations::Row) -> Option<NodeId>| -> Vec<Option<NodeId>> {
         equations.rows.iter().map(part).collect()
     };
@@ -150,6 +153,7 @@ pub fn bodies(
     Bodies {
         kept_parameters: program.parameters.fields.len(),
         contacts,
+        frictions,
         kept_position: program.position.fields.len(),
         orders: orders(model, &demands),
         parameters: emitter.parameters(&program.parameters, smooth_enough(&demands, &bare), &bare),
@@ -205,8 +209,8 @@ struct Emitter<'a> {
     scope: &'a Scope<'a>,
     early: &'a Scope<'a>,
     is_long: bool,
-    /// Number of contacts, where their forces are evaluated one by one.
-    contacts: Option<usize>,
+    /// Further fields of the parameter stage.
+    memory: String,
     /// The parts, all together.
     parts: String,
     runtime: &'a TokenStream,
@@ -251,7 +255,7 @@ impl Emitter<'_> {
         stage: &Stage,
         (scope, first): (&Scope<'_>, String),
     ) -> TokenStream {
-        let more = self.contacts.filter(|_| kind == "__Parameters").map(closed).unwrap_or_default();
+        let more = if kind == "__Parameters" { self.memory.clone() } else { String::new() };
         if !self.is_long {
             let result = format!("{kind}({}{more})", kept_values(stage, scope));
             return body(&stage.section, scope, &(first + &result), self.runtime);
@@ -298,9 +302,16 @@ fn kept_values(stage: &Stage, scope: &Scope<'_>) -> String {
     array(stage.fields.keys().map(|id| Some(*id)), scope)
 }
 
-/// By default the forces of all contacts are evaluated.
-fn closed(contacts: usize) -> String {
-    format!(", [true; {contacts}]")
+/// By default the forces of all contacts are evaluated, and how frictions stick and slide is not known.
+fn memory(contacts: Option<usize>, frictions: Option<usize>) -> String {
+    let closed = |contacts: usize| format!(", [true; {contacts}]");
+    match (contacts, frictions) {
+        (None, None) => String::new(),
+        (Some(contacts), None) => closed(contacts),
+        (contacts, Some(frictions)) => {
+            closed(contacts.unwrap_or(0)) + &format!(", [__mbs::dynamics::Grip::new(); {frictions}]")
+        }
+    }
 }
 
 fn frame(declared: &str, given: &str) -> ExtraArguments {

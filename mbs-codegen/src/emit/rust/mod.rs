@@ -21,6 +21,7 @@ mod phases;
 mod scenes;
 mod scope;
 mod signals;
+mod sticking;
 mod stub;
 mod tables;
 mod view;

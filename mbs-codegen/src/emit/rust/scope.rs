@@ -8,6 +8,9 @@ use crate::model::{Model, Role};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
 use crate::syntax::rust_identifiers::is_keyword;
 
+/// Field of the parameter stage that holds how friction sticks and slides.
+const GRIPS: &str = "__p.2";
+
 /// Values and names available within a function.
 pub struct Scope<'a> {
     /// The graph.
@@ -115,6 +118,8 @@ impl Scope<'_> {
             Node::Leaf(Leaf::State(index)) => format!("__z[{index}]"),
             Node::Leaf(Leaf::Multiplier(index)) => format!("__lambda[{index}]"),
             Node::Leaf(Leaf::Direction(index)) => format!("__x[{index}]"),
+            Node::Leaf(Leaf::Sliding(index)) => format!("{GRIPS}[{index}].direction"),
+            Node::Leaf(Leaf::Holding(index)) => format!("{GRIPS}[{index}].force"),
             Node::Leaf(Leaf::Given(MARGIN, group)) => format!("__margin{group}"),
             Node::Leaf(Leaf::Given(row, index)) => format!("__gain{row}[{index}]"),
             _ => number(f64::NAN),

@@ -47,6 +47,7 @@ use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::unstabilized::{Unstabilized, factorize};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::states::require_no_states;
+use crate::dynamics::model::method::require_no_stiction;
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::sign_checks::parameter_failure;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
@@ -124,6 +125,7 @@ pub fn inverse_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
     }
+    require_no_stiction::<S, R, N, M>()?;
     let parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model = Model::of_states(mechanism, &parameters, &metric);

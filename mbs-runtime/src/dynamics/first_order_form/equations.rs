@@ -40,7 +40,7 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     /// `true` if no step can be made smaller.
     fixed: bool,
     /// Multipliers (M) of the last evaluation.
-    lambda: [R; M],
+    pub(super) lambda: [R; M],
     /// The last step's end.
     pub(crate) end: Instant<R, N, M, S::States>,
     /// Time (s) and margin of the last instant that was shown.
@@ -50,9 +50,9 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     /// `end` and `passage` before the last step, where steps may be taken again.
     before: Before<S, R, N, M>,
     /// Resolution and bounds of the search for contacts.
-    scrutiny: Scrutiny<R>,
-    /// The parameters without the contacts that are open in the present step, where there are contacts.
-    parameters: Option<S::Parameters>,
+    pub(super) scrutiny: Scrutiny<R>,
+    /// The parameters of the present step, without the contacts that are open and with the modes of frictions, where there are any.
+    pub(super) parameters: Option<S::Parameters>,
     /// Time (s) up to which all contacts stay open by the bounds that the text declares.
     quiet: R,
     /// `true` if steps end where contacts close or open.
@@ -70,6 +70,9 @@ where
     F: Formulation<S, R, N, M>,
     R: Real,
 {
+    /// `true` if a text has contacts, or frictions with stiction.
+    const MAY_CHANGE: bool = !(S::CONTACTS.is_empty() && S::FRICTIONS.is_empty());
+
     /// Those of a motion that continues `from`.
     pub(crate) fn new(
         model: &'a Model<'a, S, R, N, M>,
@@ -95,7 +98,7 @@ where
             passage: None,
             before: (end, None),
             scrutiny: Scrutiny::beyond(),
-            parameters: (!S::CONTACTS.is_empty()).then_some(*model.parameters),
+            parameters: Self::MAY_CHANGE.then_some(*model.parameters),
             quiet: start,
             locates: true,
             counts,
@@ -121,7 +124,7 @@ where
     pub(crate) fn apart<X>(&mut self, look: impl FnOnce(&mut Self) -> X) -> X {
         let (counts, lambda, fixed) = (self.counts, self.lambda, self.fixed);
         let (end, passage) = (self.end, self.passage);
-        let open = (!S::CONTACTS.is_empty()).then_some((self.parameters, self.quiet));
+        let open = Self::MAY_CHANGE.then_some((self.parameters, self.quiet));
         self.fixed = true;
         let found = look(self);
         (self.fixed, self.end, self.passage) = (fixed, end, passage);
@@ -154,13 +157,6 @@ where
         self.fixed = true;
         *y = run.map_err(|_| failure).map_or(before, |point| point.y);
         self.project_and_solve(t, y)
-    }
-
-    /// Evaluates all contacts, as at an instant by itself.
-    pub(crate) fn with_all_contacts(&mut self) {
-        if const { !S::CONTACTS.is_empty() } {
-            self.parameters = Some(*self.model.parameters);
-        }
     }
 
     /// Takes an instant between the ends of steps for where a singular position may be passed.
@@ -200,7 +196,7 @@ where
 
     /// Calls `solve` with the mechanism as it is at time `t` (s), its inputs carried on and its phases moved on by `increments`.
     #[inline(always)]
-    fn at<X>(
+    pub(super) fn at<X>(
         &mut self,
         t: R,
         increments: &S::Phases,
@@ -211,12 +207,12 @@ where
             self;
         let model = *model;
         let parameters = match parameters {
-            Some(parameters) if const { !S::CONTACTS.is_empty() } => parameters,
+            Some(parameters) if const { Self::MAY_CHANGE } => parameters,
             _ => model.parameters,
         };
         let present = Model { parameters, ..*model };
         let Some(mechanism) = moving else {
-            let model = if const { S::CONTACTS.is_empty() } { model } else { &present };
+            let model = if const { Self::MAY_CHANGE } { &present } else { model };
             return solve(model, formulation, lambda, counts);
         };
         mechanism.carry_signals(model.mechanism, t - *start);
@@ -299,7 +295,12 @@ where
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
         let Phased { y, phases } = y;
         self.at(t, phases, |model, formulation, lambda, counts| {
-            let solved = formulation.project_and_solve(model, t, y, lambda, counts)?;
+            let solved = if const { S::FRICTIONS.is_empty() } {
+                formulation.project_and_solve(model, t, y, lambda, counts)?
+            } else {
+                model.settle(formulation, t, y, counts)?;
+                formulation.solve(model, t, y, lambda, counts)?
+            };
             *lambda = solved.lambda;
             Ok(model.with_margin_of_rows(t, y, solved))
         })
@@ -359,7 +360,7 @@ where
     #[inline]
     fn project(&mut self, t: R, y: &mut Self::State) -> Result<(), Failure> {
         let Phased { y, phases } = y;
-        self.at(t, phases, |model, formulation, _, counts| formulation.project(model, t, y, counts))
+        self.at(t, phases, |model, formulation, _, counts| model.settle(formulation, t, y, counts))
     }
 
     #[inline]
@@ -369,7 +370,7 @@ where
         let (before, margin) = (self.end.t, self.end.solved.margin);
         let next = Instant { t, y: y.y, solved, carried: solved.rate.qd };
         self.require_branch_of_step(&next, self.counts.singular != singular)?;
-        if const { !S::CONTACTS.is_empty() } {
+        if const { Self::MAY_CHANGE } {
             self.before = (self.end, self.passage);
         }
         self.passage = self.passage.or(Passage::between((before, margin), (t, solved.margin)));
@@ -384,7 +385,7 @@ where
     F: Formulation<S, R, N, M>,
     R: Real,
 {
-    const MAY_KINK: bool = !S::CONTACTS.is_empty();
+    const MAY_KINK: bool = Self::MAY_CHANGE;
 
     /// In the zone of a singular position a ten-millionth of a radian, or of a reference length.
     fn least_step(&self) -> R {
@@ -395,32 +396,41 @@ where
     }
 
     #[inline(always)]
-    fn begin(&mut self, t: R, y: &Self::State) -> bool {
-        if const { S::CONTACTS.is_empty() } {
-            return false;
+    fn begin(&mut self, t: R, y: &Self::State) -> Result<bool, Failure> {
+        let mut changes = false;
+        if const { !S::CONTACTS.is_empty() }
+            && self.locates
+            && let Some(parameters) = &mut self.parameters
+        {
+            let open = self.model.leave_out(self.start, (t, &y.y), parameters);
+            self.quiet = open.until;
+            changes = open.changes;
         }
-        if !self.locates {
-            return false;
+        if const { !S::FRICTIONS.is_empty() } {
+            changes |= self.decide(t, y, changes)?;
         }
-        let Some(parameters) = &mut self.parameters else { return false };
-        let open = self.model.leave_out(self.start, (t, &y.y), parameters);
-        self.quiet = open.until;
-        open.changes
+        Ok(changes)
     }
 
     #[inline(always)]
     fn may_kink(&mut self, to: R) -> bool {
-        let is_quiet = to <= self.quiet;
-        Self::MAY_KINK && self.locates && !is_quiet
+        let is_quiet = S::CONTACTS.is_empty() || to <= self.quiet || !self.locates;
+        Self::MAY_KINK && (!S::FRICTIONS.is_empty() || !is_quiet)
     }
 
     fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
-        if const { S::CONTACTS.is_empty() } {
-            return Ok(None);
+        let (start, mut end) = (step.start(), step.end());
+        let mut first = None;
+        if const { !S::CONTACTS.is_empty() } && self.locates {
+            let evaluated = S::evaluated(self.parameters.as_ref().unwrap_or(self.model.parameters));
+            let at = |t| step.at(t).y;
+            first = self.model.contact_change((self.start, evaluated), (start, end), at, &self.scrutiny)?;
+            end = first.unwrap_or(end);
         }
-        let ends = (step.start(), step.end());
-        let evaluated = S::evaluated(self.parameters.as_ref().unwrap_or(self.model.parameters));
-        self.model.contact_change((self.start, evaluated), ends, |t| step.at(t).y, &self.scrutiny)
+        if const { !S::FRICTIONS.is_empty() } && !self.model.first_order {
+            return Ok(self.slip(step, (start, end))?.or(first));
+        }
+        Ok(first)
     }
 
     fn retake(&mut self) {

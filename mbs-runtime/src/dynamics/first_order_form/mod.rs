@@ -3,5 +3,6 @@
 pub(crate) mod crossing;
 pub(crate) mod equations;
 pub(crate) mod explicit;
+pub(crate) mod grips;
 pub(crate) mod phases;
 pub(crate) mod radau;

@@ -7,6 +7,7 @@ pub(crate) mod penalty;
 pub(crate) mod projection;
 pub(crate) mod residuals;
 pub(crate) mod singular;
+pub(crate) mod stiction;
 pub(crate) mod unstabilized;
 pub(crate) mod variation;
 pub(crate) mod velocity_transformation;

@@ -105,8 +105,11 @@ pub trait ErrorNorm<T: Scalar>: Equation<T> {
     }
 
     /// A step begins at `y` at time `t` (s). Whether the rate of `y` is to be evaluated anew: another part of the equation may hold from here.
-    fn begin(&mut self, _t: T, _y: &Self::State) -> bool {
-        false
+    ///
+    /// # Errors
+    /// If no part of the equation holds from here.
+    fn begin(&mut self, _t: T, _y: &Self::State) -> Result<bool, Failure> {
+        Ok(false)
     }
 
     /// `true` if the equation may not be smooth at a time within the step that has begun, up to time `to` (s).

@@ -14,7 +14,18 @@ use crate::scalar::number::Real;
 /// [`FailureKind::NotSmooth`].
 pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
+    require_no_stiction::<S, R, N, M>()?;
     S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
+}
+
+/// Fails where a text has friction with stiction: outside a motion that knows whether it sticks or slides.
+///
+/// # Errors
+/// [`FailureKind::Stiction`].
+pub(crate) fn require_no_stiction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
+-> Result<(), Failure> {
+    let first = S::FRICTIONS.first();
+    first.map_or(Ok(()), |friction| Err(FailureKind::Stiction { friction }.without_time()))
 }
 
 /// [`require_slopes`] of a position of rest: ∂Q/∂q̇ has no part in it.
@@ -23,6 +34,7 @@ pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
 /// [`FailureKind::NotSmooth`].
 pub(crate) fn require_slopes_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
+    require_no_stiction::<S, R, N, M>()?;
     let missing = S::MISSING_SLOPE.filter(|missing| missing.acts_at_rest);
     missing.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
 }

@@ -174,7 +174,7 @@ where
 }
 
 /// Accelerations (N) and multipliers (M), with the force (N) that belongs to them.
-type Balanced<R, const N: usize, const M: usize> = ([R; N], [R; M], [R; N]);
+pub(crate) type Balanced<R, const N: usize, const M: usize> = ([R; N], [R; M], [R; N]);
 
 /// Warnings about method parameters that are allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -224,13 +224,13 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         solve(&Model { mechanism: &mechanism, parameters: &parameters, ..*self })
     }
 
-    /// Parameters with the same contacts left out as here.
+    /// Parameters with the same contacts left out as here, and the same grips.
     #[inline(always)]
     pub(crate) fn alike(&self, mut parameters: S::Parameters) -> S::Parameters {
         for (to, from) in S::evaluated_mut(&mut parameters).iter_mut().zip(S::evaluated(self.parameters)) {
             *to = *from;
         }
-        parameters
+        self.gripping(parameters)
     }
 
     /// Fails where a coordinate, velocity or state is no number, or a coordinate is not resolved.
@@ -362,6 +362,23 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         qdd: [R; N],
         lambda: &[R; M],
     ) -> IntegratorState<R, N, S::States> {
+        if const { !S::FRICTIONS.is_empty() } {
+            let parameters = self.with_grip_forces(position, y, (&qdd, lambda));
+            let model = Model { parameters: &parameters, ..*self };
+            return model.rates_of_forces(position, y, qdd, lambda);
+        }
+        self.rates_of_forces(position, y, qdd, lambda)
+    }
+
+    /// [`rates`](Self::rates) where the forces of frictions that stick are known.
+    #[inline(always)]
+    fn rates_of_forces(
+        &self,
+        position: &S::Position,
+        y: &IntegratorState<R, N, S::States>,
+        qdd: [R; N],
+        lambda: &[R; M],
+    ) -> IntegratorState<R, N, S::States> {
         let (mechanism, parameters) = (self.mechanism, self.parameters);
         let states = mechanism.state_rates(parameters, position, &y.qd, &y.states, lambda);
         let work = if self.balanced { self.power(position, y, &qdd, lambda) } else { R::constant(0.0) };
@@ -401,6 +418,22 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// The same where `solve` leaves changes of `standing` of their size in the multipliers.
     #[inline(always)]
     pub(crate) fn balanced_to(
+        &self,
+        standing: R,
+        position: &S::Position,
+        at: (R, &IntegratorState<R, N, S::States>),
+        lambda: &[R; M],
+        solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
+    ) -> Result<Balanced<R, N, M>, Failure> {
+        if const { !S::FRICTIONS.is_empty() } {
+            return self.balanced_with_grips(standing, position, at, lambda, solve);
+        }
+        self.balanced_freely(standing, position, at, lambda, solve)
+    }
+
+    /// The same without friction that sticks.
+    #[inline(always)]
+    pub(crate) fn balanced_freely(
         &self,
         standing: R,
         position: &S::Position,

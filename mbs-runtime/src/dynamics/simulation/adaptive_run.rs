@@ -49,7 +49,9 @@ impl<R, F: FnMut(R, &[R; N], &[R; N]) -> R, const N: usize> EventFunction<R, N> 
 }
 
 /// Figures of a run at the end of a step.
-struct Progress<R, P> {
+struct Progress<R, P, G> {
+    /// Parameters of the step, where they may change.
+    parameters: Option<G>,
     /// Phases of drives that prescribe a rate.
     phases: P,
     counts: Counts,
@@ -151,6 +153,7 @@ where
         self.sampled(until, samples, |instant, run| {
             let mut counts = run.counts;
             counts.steps += u64::from(run.accepted.wrapping_sub(steps));
+            shown.take_grips(run.parameters.as_ref());
             shown.take(*instant, Some(run.phases), counts);
             shown.passage = shown.passage.or(run.passage);
             see(&shown);
@@ -164,7 +167,7 @@ where
         &mut self,
         until: R,
         samples: u32,
-        mut see: impl FnMut(&Instant<R, N, M, S::States>, &Progress<R, S::Phases>),
+        mut see: impl FnMut(&Instant<R, N, M, S::States>, &Progress<R, S::Phases, S::Parameters>),
     ) -> Result<(), Failure> {
         let (from, count) = (self.now.t, R::constant(f64::from(samples)));
         let (mut index, mut accepted_steps) = (1, self.adaptive.accepted);
@@ -172,7 +175,8 @@ where
         if until == from {
             self.stand()?;
             let (phases, counts) = (self.mechanism.phases(), self.counts);
-            let progress = Progress { phases, counts, passage: None, accepted: accepted_steps };
+            let progress =
+                Progress { parameters: None, phases, counts, passage: None, accepted: accepted_steps };
             (0..samples).for_each(|_| see(&self.now, &progress));
             return Ok(());
         }
@@ -199,7 +203,11 @@ where
                     })?;
                     equations.pass(&instant);
                     let (counts, passage) = (equations.counts, equations.passage);
-                    see(&instant, &Progress { phases, counts, passage, accepted: accepted_steps });
+                    let parameters = equations.parameters();
+                    see(
+                        &instant,
+                        &Progress { parameters, phases, counts, passage, accepted: accepted_steps },
+                    );
                     index += 1;
                 }
                 Ok(())
@@ -228,6 +236,7 @@ where
             adaptive.largest = adaptive.largest.min(R::constant(8.0 * MOST_RESOLVED) * resolution);
         }
         self.tolerance.require_resolved(self.now.t)?;
+        self.grip_anew()?;
         let Fresh { instant: from, gained, rank_rises } = self.fresh(&mut counts)?;
         let mut monitor = match &mut event {
             Some((direction, event)) => {
@@ -295,12 +304,13 @@ where
         let solved = equations.solve(t, &y)?;
         let phases = equations.phases(t, &y.phases);
         counts = equations.counts;
-        let passage = equations.passage;
+        let (passage, parameters) = (equations.passage, equations.parameters());
         counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
         self.adaptive = adaptive.with_largest(self.adaptive.largest);
         self.errors = errors;
         self.passage = self.passage.or(passage);
         self.rank_rises = rank_rises;
+        self.take_grips(parameters.as_ref());
         self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
         self.passed = passage.is_some();
         self.reference = self.reference + gained;

@@ -101,6 +101,9 @@ where
 
     /// A step of `h` (s), as it is.
     fn stepped(&mut self, h: R) -> Result<(), Failure> {
+        if const { !S::FRICTIONS.is_empty() } {
+            return self.step_in_parts(self.now.t + h);
+        }
         if const { !S::CONTACTS.is_empty() } {
             return self.step_with_contacts(h);
         }
@@ -230,18 +233,48 @@ where
         let (model, (start, end)) = (self.model(), ahead.times());
         let (parameters, quiet) =
             open.as_ref().map_or((&self.parameters, start), |(parameters, quiet)| (parameters, *quiet));
-        if const { S::CONTACTS.is_empty() } || end <= quiet {
-            return Ok(None);
+        let mut kink = None;
+        if const { !S::CONTACTS.is_empty() } && quiet < end && self.contact_steps != ContactSteps::Unlocated {
+            let evaluated = (start, S::evaluated(parameters));
+            kink = model.contact_change(evaluated, (start, end), |t| ahead.at(t), &self.scrutiny)?;
         }
-        let evaluated = (start, S::evaluated(parameters));
-        let kink = model.contact_change(evaluated, (start, end), |t| ahead.at(t), &self.scrutiny)?;
+        if const { !S::FRICTIONS.is_empty() } {
+            let model = Model { parameters, ..model };
+            kink = self.slip(&model, ahead, kink.unwrap_or(end))?.or(kink);
+        }
         let least = motion::LEAST_STEP.of::<R>() * start.abs().max(end.abs());
         Ok(kink.map(|kink| kink.max(start + least)).filter(|kink| least < end - *kink))
     }
 
+    /// The first time (s) of a step, up to `end` (s), at which a friction changes its mode.
+    #[inline(never)]
+    fn slip(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        ahead: &AheadOf<S, R, N, M>,
+        end: R,
+    ) -> Result<Option<R>, Failure> {
+        let (start, from) = (ahead.times().0, &ahead.from.instant);
+        let lambda = from.solved.lambda;
+        model.first_slip((start, end), self.scrutiny.resolution, |t, first, values| {
+            let y = ahead.at(t);
+            model.moved(start, t, |model| {
+                let solved = match model.sticks() {
+                    true => self.method.solve(model, t, &y, &lambda, &mut Counts::default()).map(Some),
+                    false => Ok(None),
+                };
+                match solved {
+                    Ok(solved) => model.slip_values((t, &y), solved.as_ref(), (first, values)),
+                    Err(_) => values.fill(R::constant(f64::NAN)),
+                }
+            });
+        })
+    }
+
     /// A step of `h` (s), or up to where a contact closes or opens. Nothing after that is judged.
     pub(super) fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
-        if S::CONTACTS.is_empty() || self.contact_steps == ContactSteps::Unlocated {
+        let over = S::CONTACTS.is_empty() || self.contact_steps == ContactSteps::Unlocated;
+        if S::FRICTIONS.is_empty() && over {
             return self.ahead(h, self.counts, false);
         }
         let mut trial = self.trial_with_contacts(h, self.counts)?;
@@ -300,8 +333,10 @@ where
     fn parts(&mut self, until: R) -> Result<(), Failure> {
         let (whole, most) = (until - self.now.t, self.most_parts());
         for part in 1..=most {
+            self.require_parts(part)?;
+            self.grip()?;
             let rest = until - self.now.t;
-            let ahead = match part < most {
+            let ahead = match part < most || !S::FRICTIONS.is_empty() {
                 true => self.ahead_to_kink(self.part_of(whole, rest))?,
                 false => self.ahead(rest, self.counts, false)?,
             };

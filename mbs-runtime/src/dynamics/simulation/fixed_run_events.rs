@@ -66,14 +66,17 @@ where
             return self.stand().map(|()| false);
         }
         self.require_resolution((until - from) / R::constant(f64::from(steps)))?;
+        self.grip()?;
         let fresh = self.fresh(&mut Counts::default())?.instant;
         let mut monitor = self.monitor(direction, &fresh, &mut event)?;
         for index in 1..=steps {
             let end = end_of(from, until, (index, steps));
             let (length, most) = (end - self.now.t, self.most_parts());
             for part in 1..=most {
+                self.require_parts(part)?;
+                self.grip()?;
                 let rest = end - self.now.t;
-                let to_kink = part < most;
+                let to_kink = part < most || !S::FRICTIONS.is_empty();
                 let whole = match to_kink {
                     true => self.ahead_to_kink(self.part_of(length, rest))?,
                     false => self.ahead(rest, self.counts, false)?,

@@ -60,7 +60,12 @@ where
 
     /// Number of parts that a step of fixed size is taken in at most.
     pub(super) fn most_parts(&self) -> u32 {
-        if matches!(self.contact_steps, ContactSteps::Graded(_)) { MOST_GRADED_PARTS } else { MOST_PARTS }
+        let parts = if matches!(self.contact_steps, ContactSteps::Graded(_)) {
+            MOST_GRADED_PARTS
+        } else {
+            MOST_PARTS
+        };
+        parts.max(Self::most_slips())
     }
 
     /// Length (s) of the next part of a step of `whole` (s) of which `rest` (s) is left.

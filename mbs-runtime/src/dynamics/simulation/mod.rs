@@ -7,6 +7,7 @@ pub(crate) mod contact;
 pub(crate) mod fixed_run;
 pub(crate) mod fixed_run_events;
 pub(crate) mod graded_steps;
+pub(crate) mod grips;
 pub(crate) mod reading;
 
 use crate::dynamics::equilibrium::consistent_start;
@@ -215,6 +216,8 @@ where
         model.metric = &metric;
         Projection::default().project(&model, t, &mut y, &mut counts)?;
         model.rank_rises = rank_rises(&model, t, &y);
+        let parameters = grips::anew(&method, &model, (t, &y), &mut counts)?;
+        let model = Model { parameters: &parameters, ..model };
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts);
         let solved = model.with_margin_of_rows(t, &y, model.require_held(t, &y, solved)?);
         consistent_start::require_decided(&model, t, &y)?;
@@ -327,6 +330,7 @@ where
 
     /// Solves the present instant anew where parameters or inputs have changed: a run of no length.
     fn stand(&mut self) -> Result<(), Failure> {
+        self.grip_anew()?;
         let mut counts = self.counts;
         let Fresh { instant, gained, rank_rises } = self.fresh(&mut counts)?;
         if self.stale {
@@ -350,7 +354,7 @@ where
             }
         }
         if const { S::HAS_SIGNALS || !S::PHASES.is_empty() } {
-            self.parameters = self.mechanism.parameters();
+            self.parameters = self.model().gripping(self.mechanism.parameters());
         }
         self.now = next;
         self.counts = counts;
@@ -383,7 +387,7 @@ where
         if const { !S::PHASES.is_empty() } {
             self.mechanism.set_phases(at_present(&self.mechanism, self.now.t));
         }
-        self.parameters = self.mechanism.parameters();
+        self.parameters = self.model().gripping(self.mechanism.parameters());
         self.metric = Metric::next_to(&self.mechanism, &self.parameters, self.now.t, &self.now.y.q);
         self.fault = parameter_failure(&self.mechanism);
         let after = self.model().total_energy(self.now.t, &self.now.y);

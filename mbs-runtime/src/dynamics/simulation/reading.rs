@@ -124,7 +124,16 @@ where
             lambda: self.lambda(),
             states: &self.now.y.states,
         };
-        self.mechanism.loads(&self.parameters, &position, &motion)
+        if const { S::FRICTIONS.is_empty() } {
+            return self.mechanism.loads(&self.parameters, &position, &motion);
+        }
+        self.mechanism.loads(&self.parameters_with_forces(), &position, &motion)
+    }
+
+    /// Values of parameters at the present instant, with the directions of frictions that slide and the forces of those that stick.
+    pub fn parameters_with_forces(&self) -> S::Parameters {
+        let (model, Instant { t, y, .. }) = (self.model(), &self.now);
+        model.with_grip_forces(&model.position(*t, y), y, (self.qdd(), self.lambda()))
     }
 
     /// Multipliers that are unique, and rows that follow from others, at the present position. Where a motion passes a
@@ -157,7 +166,7 @@ where
             lambda: self.lambda(),
             states: &self.now.y.states,
         };
-        found.mark_loads(&self.mechanism, &self.parameters, &position, &motion, unique);
+        found.mark_loads(&self.mechanism, &self.parameters_with_forces(), &position, &motion, unique);
         Ok(())
     }
 

@@ -130,7 +130,7 @@ where
     forces.work.push(balance.work);
     forces.defect.push(balance.defect);
     forces.closure_rate.push(balance.phi_d);
-    let (mechanism, parameters) = (run.mechanism(), run.mechanism().parameters());
+    let (mechanism, parameters) = (run.mechanism(), run.parameters_with_forces());
     let position = mechanism.position(&parameters, run.q(), run.t());
     let moving = DynamicState { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
     power_balance::push(forces, mechanism, (&parameters, &position), &moving);

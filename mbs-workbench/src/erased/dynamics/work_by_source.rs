@@ -73,7 +73,8 @@ impl<X> Single<X> {
         let position = model.position(t, y);
         let motion =
             DynamicState { qd: &y.qd, qdd: &solved.rate.qd, lambda: &solved.lambda, states: &y.states };
-        let powers = power_balance::powers(model.mechanism, (model.parameters, &position), &motion);
+        let parameters = model.with_grip_forces(&position, y, (&solved.rate.qd, &solved.lambda));
+        let powers = power_balance::powers(model.mechanism, (&parameters, &position), &motion);
         powers.get(self.supply).map_or(0.0, |(_, _, power)| *power)
     }
 

@@ -170,6 +170,9 @@ fn tension(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
 
 /// −(μ |N| tanh(ṡ/v₀) + c ṡ).
 fn friction(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
+    if fields.scalar("sticks")?.is_some() {
+        return Err(Gap("friction that sticks".to_string()));
+    }
     let along = fields.required("along")?;
     let [normal, coefficient, speed] = ["normal", "coefficient", "speed"].map(|name| fields.required(name));
     let limit = coefficient?.value.v * normal?.value.v.abs();

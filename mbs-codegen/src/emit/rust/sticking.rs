@@ -1,0 +1,68 @@
+//! Frictions with stiction: their table, the function of their rows, and access to how they stick and slide.
+
+use std::fmt::Write;
+
+use proc_macro2::TokenStream;
+use quote::{quote, quote_spanned};
+
+use crate::emit::rust::code::{block, lets};
+use crate::emit::rust::scope::Scope;
+use crate::equations::Sticking;
+use crate::program::Section;
+
+/// Items of `Dynamic` for a text that has such frictions.
+pub fn items(
+    sticking: &[Sticking],
+    section: &Section,
+    scope: &Scope<'_>,
+    runtime: &TokenStream,
+) -> TokenStream {
+    let Some(declared) = scope.model.dynamics.as_ref().filter(|_| !sticking.is_empty()) else {
+        return TokenStream::new();
+    };
+    let entries = declared.sticking.iter().map(|friction| {
+        let (name, line) = (&friction.name, quote_spanned!(friction.span=> ::core::line!()));
+        quote! { #runtime::Entry { name: #name, unit: "N", line: #line } }
+    });
+    let (n, m) = (scope.model.coordinates.len(), scope.model.rows.len());
+    let (states, k) = (declared.states.len(), sticking.len());
+    let mut text = String::new();
+    lets(section, scope, &mut text);
+    let _ = writeln!(text, "let mut __rows = [__mbs::dynamics::FrictionRow::<T, {n}>::new(); {k}];");
+    for (index, Sticking { place, rate, gradient, gamma, limit }) in sticking.iter().enumerate() {
+        let fields = [
+            ("place", scope.operand(*place)),
+            ("rate", scope.or_zero(*rate)),
+            ("gamma", scope.or_zero(*gamma)),
+            ("limit", scope.operand(*limit)),
+        ];
+        for (field, value) in fields {
+            let _ = writeln!(text, "__rows[{index}].{field} = {value};");
+        }
+        for (column, entry) in gradient {
+            let _ = writeln!(text, "__rows[{index}].gradient[{column}] = {};", scope.operand(*entry));
+        }
+    }
+    let _ = write!(text, "<__See as __mbs::dynamics::WithFrictionRows<T, {n}>>::at(__see, &__rows)");
+    let body = block(&text, runtime);
+    quote! {
+        const FRICTIONS: &'static [#runtime::Entry] = &[#(#entries),*];
+        #[inline]
+        fn grips(__p: &__Parameters<T>) -> &[#runtime::dynamics::Grip<T>] {
+            &__p.2
+        }
+        #[inline]
+        fn grips_mut(__p: &mut __Parameters<T>) -> &mut [#runtime::dynamics::Grip<T>] {
+            &mut __p.2
+        }
+        fn friction_rows<__See: #runtime::dynamics::WithFrictionRows<T, #n>>(
+            &self,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
+            __qd: &[T; #n],
+            __z: &[T; #states],
+            __lambda: &[T; #m],
+            __see: __See,
+        ) -> __See::Output #body
+    }
+}

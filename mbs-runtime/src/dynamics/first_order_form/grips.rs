@@ -1,0 +1,76 @@
+//! Modes of frictions with stiction along a run: decided where a step begins, and ended where one changes.
+
+use crate::dynamics::first_order_form::equations::{Equations, Moving};
+use crate::dynamics::integrators::event::Dense;
+use crate::dynamics::model::{Formulation, Model};
+use crate::failure::Failure;
+use crate::mechanism::dynamic::Dynamic;
+use crate::scalar::number::Real;
+
+impl<S, F, R, const N: usize, const M: usize> Equations<'_, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    /// Evaluates all contacts, as at an instant by itself.
+    pub(crate) fn with_all_contacts(&mut self) {
+        if const { !S::CONTACTS.is_empty() } {
+            let all = *self.model.parameters;
+            let gripping = |parameters| Model { parameters, ..*self.model }.gripping(all);
+            self.parameters = self.parameters.as_ref().map(gripping);
+        }
+    }
+
+    /// The parameters of the last step, where they may change.
+    pub(crate) fn parameters(&self) -> Option<S::Parameters> {
+        self.parameters
+    }
+
+    /// Modes of the frictions from `y` on; `true` if they change. `anew`: contacts have changed, so that the last rates do not count. The
+    /// parts of a step of fixed size keep its modes.
+    #[inline(never)]
+    pub(super) fn decide(&mut self, t: R, y: &Moving<S, R, N, M>, anew: bool) -> Result<bool, Failure> {
+        if self.model.first_order {
+            return Ok(false);
+        }
+        let rate = if anew { Some(self.solve(t, y)?) } else { None };
+        let known = rate.unwrap_or(self.end.solved);
+        let decided = self.at(t, &y.phases, |model, formulation, lambda, counts| {
+            model
+                .decide(t, &y.y, Some(&known), &mut |model| formulation.solve(model, t, &y.y, lambda, counts))
+        })?;
+        let Some((grips, solved)) = decided else { return Ok(false) };
+        let of = Model { parameters: &grips, ..*self.model };
+        self.parameters = self.parameters.map(|parameters| of.gripping(parameters));
+        self.lambda = solved.lambda;
+        self.end.solved = solved;
+        Ok(true)
+    }
+
+    /// The first time (s) of a step at which a friction changes its mode.
+    #[inline(never)]
+    pub(super) fn slip(
+        &mut self,
+        step: &impl Dense<R, State = Moving<S, R, N, M>>,
+        times: (R, R),
+    ) -> Result<Option<R>, Failure> {
+        let (model, resolution) = (self.model, self.scrutiny.resolution);
+        self.apart(|equations| {
+            model.first_slip(times, resolution, |t, first, values| {
+                let y = step.at(t);
+                equations.at(t, &y.phases, |model, formulation, lambda, counts| {
+                    let solved = if model.sticks() {
+                        match formulation.solve(model, t, &y.y, lambda, counts) {
+                            Ok(solved) => Some(solved),
+                            Err(_) => return values.fill(R::constant(f64::NAN)),
+                        }
+                    } else {
+                        None
+                    };
+                    model.slip_values((t, &y.y), solved.as_ref(), (first, values));
+                });
+            })
+        })
+    }
+}

@@ -1,0 +1,339 @@
+//! Modes of frictions at zero speed: the complementarity problem of accelerations and friction forces.
+//!
+//! A row at rest sticks with |h| below its limit, or slides with s̈ of the sign of its direction. Both together are a linear
+//! complementarity problem, solved by principal pivots: one row at a time changes, the one that exceeds its limit most, then the first.
+//! So normal forces that depend on the multipliers are exact in each trial. Where pivots come back to modes that they had, all
+//! modes of up to four rows are tried, those with the fewest sliding rows first. A force between the limits of sliding and of sticking
+//! allows both; the row then sticks.
+//! Source: Pfeiffer & Glocker 1996, Multibody Dynamics with Unilateral Contacts, ch. 5; Murty 1974 for the order of pivots.
+
+use crate::dynamics::formulations::projection::correction_factors;
+use crate::dynamics::formulations::stiction::{Shares, size, sticks};
+use crate::dynamics::integrators::vector::IntegratorState;
+use crate::dynamics::model::{Model, Solved};
+use crate::failure::{Failure, FailureKind, checks};
+use crate::linear_algebra::vectors::dot;
+use crate::mechanism::dynamic::Dynamic;
+use crate::mechanism::stiction::{FrictionRow, WithFrictionRows};
+use crate::scalar::number::Real;
+use crate::tolerances::{motion, stiction};
+
+/// Rows at rest of which all modes are tried.
+const MOST_ENUMERATED: usize = 4;
+
+/// Pivots a row: one is usual.
+const PIVOTS_OF_A_ROW: usize = 4;
+
+/// Roundings of a time that an event is located to.
+const ROUNDINGS_OF_AN_EVENT: f64 = 4.0;
+
+/// Modes of the frictions as parameters hold them, with the rates of the state.
+pub(crate) type Decided<S, R, const N: usize, const M: usize> = (
+    <S as crate::mechanism::Mechanism<R, N, M>>::Parameters,
+    Solved<R, N, M, <S as Dynamic<R, N, M>>::States>,
+);
+
+/// Edge of sliding over that of sticking.
+const SLIDING_EDGE: f64 = 4.0;
+
+/// Judgement of a row at rest in one mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Verdict<R> {
+    Consistent,
+    /// The force exceeds the limit by this factor; it would slide in this direction.
+    Slips {
+        direction: R,
+        excess: R,
+    },
+    /// It would slide against the direction in which it does.
+    Sticks,
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Modes of the frictions at a state, where they are not those of the model. `known`: rates in the modes of the model; none where
+    /// parameters or inputs have changed, so that every row is judged by its speed. `solve` gives the rates of other modes.
+    ///
+    /// # Errors
+    /// [`FailureKind::StickingUndecided`]; those of `solve`.
+    pub(crate) fn decide(
+        &self,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+        known: Option<&Solved<R, N, M, S::States>>,
+        solve: &mut impl FnMut(&Model<'_, S, R, N, M>) -> Result<Solved<R, N, M, S::States>, Failure>,
+    ) -> Result<Option<Decided<S, R, N, M>>, Failure> {
+        let position = self.position(t, y);
+        let lambda = known.map_or([R::constant(0.0); M], |known| known.lambda);
+        let deciding = Deciding { model: self, t, y, position: &position, known, solve };
+        self.mechanism.friction_rows(self.parameters, &position, &y.qd, &y.states, &lambda, deciding)
+    }
+}
+
+struct Deciding<'a, S: Dynamic<R, N, M>, R: Real, F, const N: usize, const M: usize> {
+    model: &'a Model<'a, S, R, N, M>,
+    t: R,
+    y: &'a IntegratorState<R, N, S::States>,
+    position: &'a S::Position,
+    known: Option<&'a Solved<R, N, M, S::States>>,
+    solve: &'a mut F,
+}
+
+/// Copies rows.
+struct Rows<'a, R, const N: usize, const L: usize>(&'a mut [FrictionRow<R, N>; L]);
+
+impl<R: Real, const N: usize, const L: usize> WithFrictionRows<R, N> for Rows<'_, R, N, L> {
+    type Output = ();
+
+    fn at<const K: usize>(self, rows: &[FrictionRow<R, N>; K]) {
+        self.0.iter_mut().zip(rows).for_each(|(to, from)| *to = *from);
+    }
+}
+
+impl<S, R, F, const N: usize, const M: usize> WithFrictionRows<R, N> for Deciding<'_, S, R, F, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    F: FnMut(&Model<'_, S, R, N, M>) -> Result<Solved<R, N, M, S::States>, Failure>,
+{
+    type Output = Result<Option<Decided<S, R, N, M>>, Failure>;
+
+    fn at<const K: usize>(mut self, rows: &[FrictionRow<R, N>; K]) -> Self::Output {
+        let zero = R::constant(0.0);
+        let rest = self.at_rest(rows);
+        let mut trial = *self.model.parameters;
+        for ((grip, row), rest) in S::grips_mut(&mut trial).iter_mut().zip(rows).zip(&rest) {
+            if !rest {
+                grip.direction = row.rate.sign();
+            } else if !sticks(grip) || self.known.is_none() {
+                // What has stuck and still does keeps its place, roundings apart.
+                let off = (row.place - grip.place).abs();
+                let stays = sticks(grip)
+                    && off <= stiction::EDGE.of::<R>() * size(&row.gradient, &self.y.q, row.place);
+                grip.place = if stays { grip.place } else { row.place };
+                grip.direction = zero;
+            }
+        }
+        let mut decided = self.pivots(rows, &rest, &mut trial)?;
+        for round in 0..=K {
+            let Some(index) = self.held_by_others(rows, &rest, &trial, &decided)? else { break };
+            if round == K {
+                let friction = checks::entry(S::FRICTIONS, u16::try_from(index).unwrap_or(u16::MAX));
+                return Err(FailureKind::StickingUndecided { friction }.at(self.t.to_f64()));
+            }
+            // It slipped before the row that moves: with that one sliding it may hold.
+            let grips = S::grips_mut(&mut trial).iter_mut().skip(index).take(1);
+            grips.for_each(|grip| grip.direction = zero);
+            decided = self.pivots(rows, &rest, &mut trial)?;
+        }
+        let same = self.known.is_some() && S::grips(&trial) == S::grips(self.model.parameters);
+        Ok((!same).then_some((trial, decided)))
+    }
+}
+
+impl<S, R, F, const N: usize, const M: usize> Deciding<'_, S, R, F, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    F: FnMut(&Model<'_, S, R, N, M>) -> Result<Solved<R, N, M, S::States>, Failure>,
+{
+    /// Rows at zero speed: those that stick, those whose sliding has ended, and at a new start those without speed.
+    fn at_rest<const K: usize>(&self, rows: &[FrictionRow<R, N>; K]) -> [bool; K] {
+        let (zero, mut rest) = (R::constant(0.0), [false; K]);
+        let resolution = R::constant(ROUNDINGS_OF_AN_EVENT) * motion::LEAST_STEP.of() * self.t.abs();
+        for ((rest, row), grip) in rest.iter_mut().zip(rows).zip(S::grips(self.model.parameters)) {
+            let mut terms = size(&row.gradient, &self.y.qd, row.rate);
+            for (entry, scale) in row.gradient.iter().zip(&self.model.metric.coordinates) {
+                terms = terms + motion::AT_REST.of::<R>() * (*entry * *scale).abs();
+            }
+            let change = self.known.map_or(zero, |known| dot(&row.gradient, &known.rate.qd) - row.gamma);
+            let none = motion::NO_VALUE.of::<R>() * terms + resolution * change.abs();
+            *rest = match self.known {
+                Some(_) => sticks(grip) || grip.direction * row.rate <= none,
+                None => row.rate.abs() <= none,
+            };
+        }
+        rest
+    }
+
+    /// Rates with modes of `trial`, which are those of the model in the first trial where nothing is new.
+    fn rates(&mut self, trial: &S::Parameters) -> Result<Solved<R, N, M, S::States>, Failure> {
+        if let Some(known) = self.known
+            && S::grips(trial) == S::grips(self.model.parameters)
+        {
+            return Ok(*known);
+        }
+        (self.solve)(&Model { parameters: trial, ..*self.model })
+    }
+
+    fn pivots<const K: usize>(
+        &mut self,
+        rows: &[FrictionRow<R, N>; K],
+        rest: &[bool; K],
+        trial: &mut S::Parameters,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let (mut failed, mut wrong) = (None, 0);
+        for round in 0..PIVOTS_OF_A_ROW * (K + 1) {
+            let solved = match self.rates(trial) {
+                Ok(solved) => solved,
+                Err(failure) => {
+                    failed = Some(failure);
+                    break;
+                }
+            };
+            let verdicts = self.verdicts(rows, rest, trial, &solved);
+            let first = verdicts.iter().position(|verdict| *verdict != Verdict::Consistent);
+            let Some(first) = first else { return Ok(solved) };
+            let mut most = (first, R::constant(0.0));
+            for (index, verdict) in verdicts.iter().enumerate().filter(|_| round <= K) {
+                if let Verdict::Slips { excess, .. } = verdict
+                    && most.1 < *excess
+                {
+                    most = (index, *excess);
+                }
+            }
+            wrong = most.0;
+            let chosen = S::grips_mut(trial).iter_mut().zip(&verdicts).skip(wrong).take(1);
+            for (grip, verdict) in chosen {
+                grip.direction = match verdict {
+                    Verdict::Slips { direction, .. } => *direction,
+                    _ => R::constant(0.0),
+                };
+            }
+        }
+        if let Some(solved) = self.enumerate(rows, rest, trial) {
+            return Ok(solved);
+        }
+        let friction = checks::entry(S::FRICTIONS, u16::try_from(wrong).unwrap_or(u16::MAX));
+        let undecided = FailureKind::StickingUndecided { friction }.at(self.t.to_f64());
+        Err(failed.unwrap_or(undecided))
+    }
+
+    /// All modes of a few rows, those with the fewest sliding rows first.
+    #[cold]
+    #[inline(never)]
+    fn enumerate<const K: usize>(
+        &mut self,
+        rows: &[FrictionRow<R, N>; K],
+        rest: &[bool; K],
+        trial: &mut S::Parameters,
+    ) -> Option<Solved<R, N, M, S::States>> {
+        let count = rest.iter().filter(|rest| **rest).count();
+        if count > MOST_ENUMERATED {
+            return None;
+        }
+        let codes = (0..count).fold(1_u32, |codes, _| codes.saturating_mul(3));
+        for sliding in 0..=count {
+            for code in 0..codes {
+                let (mut left, mut slides) = (code, 0);
+                for (grip, _) in S::grips_mut(trial).iter_mut().zip(rest).filter(|(_, rest)| **rest) {
+                    grip.direction =
+                        R::constant([0.0, 1.0, -1.0].get((left % 3) as usize).copied().unwrap_or(0.0));
+                    slides += usize::from(!sticks(grip));
+                    left /= 3;
+                }
+                if slides != sliding {
+                    continue;
+                }
+                let Ok(solved) = self.rates(trial) else { continue };
+                let verdicts = self.verdicts(rows, rest, trial, &solved);
+                if verdicts.iter().all(|verdict| *verdict == Verdict::Consistent) {
+                    return Some(solved);
+                }
+            }
+        }
+        None
+    }
+
+    fn verdicts<const K: usize>(
+        &self,
+        rows: &[FrictionRow<R, N>; K],
+        rest: &[bool; K],
+        trial: &S::Parameters,
+        solved: &Solved<R, N, M, S::States>,
+    ) -> [Verdict<R>; K] {
+        let (zero, one, y) = (R::constant(0.0), R::constant(1.0), self.y);
+        let (qdd, lambda) = (&solved.rate.qd, &solved.lambda);
+        let model = Model { parameters: trial, ..*self.model };
+        let held = model.with_grip_forces(self.position, y, (qdd, lambda));
+        let mut present = *rows;
+        let copied = Rows(&mut present);
+        model.mechanism.friction_rows(trial, self.position, &y.qd, &y.states, lambda, copied);
+        let mut verdicts = [Verdict::Consistent; K];
+        let grips = S::grips(&held).iter().zip(rest);
+        for ((verdict, row), (grip, _)) in
+            verdicts.iter_mut().zip(&present).zip(grips).filter(|(_, (_, rest))| **rest)
+        {
+            let acceleration = dot(&row.gradient, qdd) - row.gamma;
+            let terms = size(&row.gradient, qdd, acceleration) + row.gamma.abs();
+            let (force, limit) = (grip.force.abs(), row.limit);
+            // Accelerations that are none are roundings of those that the friction's forces make.
+            let exceeds = |acceleration: R, share: R| {
+                share * terms < acceleration && {
+                    let made = (limit + force) * self.softness(&row.gradient);
+                    !acceleration.less(share * (terms + made))
+                }
+            };
+            if !sticks(grip) {
+                // As much as the forces at the edge of sticking make, and more: one of both is consistent.
+                let edge = R::constant(SLIDING_EDGE) * stiction::EDGE.of();
+                if exceeds(-acceleration * grip.direction, edge) {
+                    *verdict = Verdict::Sticks;
+                }
+                continue;
+            }
+            let against = if zero < grip.force { -one } else { one };
+            // Written so that NaN does not hold.
+            if !force.less(limit - stiction::EDGE.of::<R>() * (limit + force)) {
+                let least = R::constant(f64::from(f32::MIN_POSITIVE));
+                *verdict = Verdict::Slips { direction: against, excess: force / limit.max(least) };
+            } else if exceeds(acceleration.abs(), stiction::CONTRADICTED.of()) {
+                *verdict = Verdict::Slips { direction: acceleration.sign(), excess: one };
+            }
+        }
+        verdicts
+    }
+
+    /// A row that has slipped while others, from which it follows, still hold: its force would depend on when that began.
+    fn held_by_others<const K: usize>(
+        &self,
+        rows: &[FrictionRow<R, N>; K],
+        rest: &[bool; K],
+        trial: &S::Parameters,
+        solved: &Solved<R, N, M, S::States>,
+    ) -> Result<Option<usize>, Failure> {
+        let (zero, qdd, grips) = (R::constant(0.0), &solved.rate.qd, S::grips(trial));
+        let mut holds = [false; K];
+        holds.iter_mut().zip(grips).for_each(|(holds, grip)| *holds = sticks(grip));
+        for (index, ((row, grip), _)) in
+            rows.iter().zip(grips).zip(rest).enumerate().filter(|(_, (_, rest))| **rest)
+        {
+            let acceleration = dot(&row.gradient, qdd) - row.gamma;
+            let terms = size(&row.gradient, qdd, acceleration) + row.gamma.abs();
+            let still = |made: R| acceleration.abs() <= stiction::CONTRADICTED.of::<R>() * (terms + made);
+            if sticks(grip) || !holds.contains(&true) || !still(row.limit * self.softness(&row.gradient)) {
+                continue;
+            }
+            let factors = correction_factors(self.model, self.t, self.position)?;
+            let answers = rows.map(|row| factors.solve(&row.gradient, &[zero; M]).0);
+            let mut mask = holds;
+            mask.iter_mut().skip(index).take(1).for_each(|mask| *mask = true);
+            let entry = |row: &FrictionRow<R, N>, column: usize| {
+                answers.get(column).map_or(zero, |answer| dot(&row.gradient, answer))
+            };
+            if Shares::of(rows, &mask, entry).singular && !Shares::of(rows, &holds, entry).singular {
+                return Ok(Some(index));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Acceleration along a row by a unit force; 0 where the position has no factors, as one of rows that jam.
+    #[cold]
+    #[inline(never)]
+    fn softness(&self, gradient: &[R; N]) -> R {
+        let factors = correction_factors(self.model, self.t, self.position);
+        factors.map_or(R::constant(0.0), |factors| {
+            dot(gradient, &factors.solve(gradient, &[R::constant(0.0); M]).0).abs()
+        })
+    }
+}

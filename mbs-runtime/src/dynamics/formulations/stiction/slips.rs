@@ -1,0 +1,118 @@
+//! Ends of sticking and of sliding within a step.
+
+use crate::dynamics::formulations::stiction::{size, sticks};
+use crate::dynamics::integrators::event::{GROUP, Scrutiny, Watched, first_beyond};
+use crate::dynamics::integrators::vector::IntegratorState;
+use crate::dynamics::model::{Model, Solved};
+use crate::failure::{Failure, FailureKind, checks};
+use crate::mechanism::Entry;
+use crate::mechanism::dynamic::Dynamic;
+use crate::mechanism::stiction::{FrictionRow, WithFrictionRows};
+use crate::scalar::number::Real;
+use crate::tolerances::motion;
+
+/// Functions of a friction: the force to both sides where it sticks, the speed where it slides.
+const SIDES: usize = 2;
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Functions of a state at `t` (s) from `first` on that are positive as long as frictions go on as they do. `solved`: its rates, which
+    /// frictions that stick need.
+    pub(crate) fn slip_values(
+        &self,
+        (t, y): (R, &IntegratorState<R, N, S::States>),
+        solved: Option<&Solved<R, N, M, S::States>>,
+        (first, values): (usize, &mut [R; GROUP]),
+    ) {
+        let position = self.position(t, y);
+        let lambda = solved.map_or([R::constant(0.0); M], |solved| solved.lambda);
+        let held = solved.map(|solved| self.with_grip_forces(&position, y, (&solved.rate.qd, &lambda)));
+        let parameters = held.as_ref().unwrap_or(self.parameters);
+        let margins = Margins { model: self, held: parameters, y, first, values };
+        self.mechanism.friction_rows(self.parameters, &position, &y.qd, &y.states, &lambda, margins);
+    }
+
+    /// The first time (s) between two times at which a friction that sticks begins to slide, or one that slides comes to rest; after it
+    /// by rounding. `fill` gives [`slip_values`](Self::slip_values) at a time.
+    ///
+    /// # Errors
+    /// [`FailureKind::NonFinite`] with the friction.
+    pub(crate) fn first_slip(
+        &self,
+        times: (R, R),
+        resolution: Option<R>,
+        fill: impl FnMut(R, usize, &mut [R; GROUP]),
+    ) -> Result<Option<R>, Failure> {
+        let scrutiny = Scrutiny { resolution, ..Scrutiny::beyond() };
+        match first_beyond(&mut Slips { count: SIDES * S::FRICTIONS.len(), scrutiny, fill }, times) {
+            Ok(found) => Ok(found.map(|(_, t)| t)),
+            Err((member, _)) => {
+                let index = u16::try_from(member / SIDES).unwrap_or(u16::MAX);
+                let Entry { name, line, .. } = checks::entry(S::FRICTIONS, index);
+                Err(FailureKind::NonFinite { name, line: *line }.without_time())
+            }
+        }
+    }
+}
+
+struct Margins<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    model: &'a Model<'a, S, R, N, M>,
+    held: &'a S::Parameters,
+    y: &'a IntegratorState<R, N, S::States>,
+    first: usize,
+    values: &'a mut [R; GROUP],
+}
+
+impl<S, R, const N: usize, const M: usize> WithFrictionRows<R, N> for Margins<'_, S, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+{
+    type Output = ();
+
+    fn at<const K: usize>(self, rows: &[FrictionRow<R, N>; K]) {
+        let one = R::constant(1.0);
+        for (place, value) in self.values.iter_mut().enumerate() {
+            let (index, side) = ((self.first + place) / SIDES, (self.first + place) % SIDES);
+            let (Some(row), Some(grip)) = (rows.get(index), S::grips(self.held).get(index)) else { return };
+            *value = match (sticks(grip), side) {
+                (true, 0) => row.limit - grip.force,
+                (true, _) => row.limit + grip.force,
+                (false, 0) => {
+                    let mut terms = size(&row.gradient, &self.y.qd, row.rate);
+                    for (entry, scale) in row.gradient.iter().zip(&self.model.metric.coordinates) {
+                        terms = terms + motion::AT_REST.of::<R>() * (*entry * *scale).abs();
+                    }
+                    // A speed that is none has not ended.
+                    grip.direction * row.rate + motion::NO_VALUE.of::<R>() * terms
+                }
+                (false, _) => one,
+            };
+        }
+    }
+}
+
+/// The functions along a step.
+struct Slips<R, F> {
+    count: usize,
+    scrutiny: Scrutiny<R>,
+    fill: F,
+}
+
+impl<R: Real, F: FnMut(R, usize, &mut [R; GROUP])> Watched<R> for Slips<R, F> {
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
+        (self.fill)(t, first, values);
+    }
+
+    /// Each begins on its side: modes were decided there.
+    fn positive(&self, _: usize) -> bool {
+        true
+    }
+
+    fn scrutiny(&mut self, _: usize, _: R) -> Scrutiny<R> {
+        self.scrutiny
+    }
+}

@@ -1,0 +1,17 @@
+//! Friction that sticks: rows that follow from others, and the edge of sticking.
+
+use crate::tolerances::Law;
+
+/// Least over largest pivot of W, scaled to 1, from which rows that stick are independent: half the digits are left.
+pub(crate) const DEPENDENT: Law = Law::root(1.0);
+
+/// What is added to the diagonal of a singular W, scaled to 1. Forty steps with it find the shortest solution where directions of W are
+/// above it; rounding over it is what the shares of a force have.
+pub(crate) const RAISED: Law = Law::fourth_root(1.0);
+
+/// Part of the force at which friction slips that counts as rounding, and of the terms of an acceleration that is none: the resolution
+/// of events in time and of the accelerations.
+pub(crate) const EDGE: Law = Law::ulps(1024.0);
+
+/// Part of the terms of an acceleration along a row that sticks, from which the row contradicts others.
+pub(crate) const CONTRADICTED: Law = Law::root(64.0);

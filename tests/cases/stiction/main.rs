@@ -1,0 +1,9 @@
+//! Friction that sticks: belts, slopes, blocks on each other and pendulums against closed forms, by every explicit method.
+#![forbid(unsafe_code)]
+
+mod belt;
+mod blocks;
+mod pendulum;
+mod random;
+mod refusals;
+mod slope;
