@@ -61,3 +61,29 @@ fn the_stored_code_states_its_cost() {
         assert!(found.contains(&format!("/// | `{function}`")), "{function}");
     }
 }
+
+/// A ball over a table, and a roller over a cam.
+const CONTACTS: &str = "/// Two contacts.
+pub mechanism Contacts;
+function profile: m(rad), C3, periodic TAU;
+coord x: m = 0.01;
+coord y: m = 0.1;
+curve cam = polar profile about [0, 0] turned t/1s*1rad;
+body roller { mass: 1kg, com: [x, y] }
+contact table { gap: y, stiffness: 1e6 [N/m] }
+contact nose { gap: distance([x, y], cam), stiffness: 1e6 [N/m], damping: 1 [s/m] }
+";
+
+#[test]
+fn a_long_block_of_a_contact_ends_at_an_open_gap_and_a_short_one_has_no_test() {
+    let found = laid_out(CONTACTS);
+    let force = found.split("fn force(").nth(1).expect("forces").split("fn force_q(").next().expect("a body");
+    let blocks: Vec<&str> = force.split("if __p.1[").skip(1).collect();
+    let [table, nose] = blocks[..] else { panic!("two blocks: {force}") };
+    assert!(!table.contains("T::all("), "{table}");
+    let (before, after) =
+        nose.split_once("if !T::all(T::less(T::constant(0.0f64), ").expect("a test of the gap");
+    let gap = after.split_once(')').expect("the gap").0;
+    assert!(before.contains(&format!("let {gap} =")) && before.contains("::jet::<"), "{before}");
+    assert!(!after.contains("::jet::<") && after.contains("__sum[0] ="), "{after}");
+}

@@ -1,22 +1,31 @@
-//! Forces by contact: the block of an open contact is skipped.
+//! Forces by contact: the block of an open contact is skipped, known as open before or by its gap in the block.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::emit::rust::code::{array, block, lets};
+use crate::emit::rust::code::{array, block, lets, print};
 use crate::emit::rust::scope::Scope;
-use crate::equations::{ByContact, Pressing, Push, Sparse};
-use crate::program::{ContactProgram, PushProgram, Section};
+use crate::equations::{ByContact, Gap, Pressing, Push, Sparse};
+use crate::program::{Assignment, ContactProgram, PushProgram, Section};
 use crate::symbolic::NodeId;
 
 /// Field of the parameter stage with the contacts that are evaluated.
 const CLOSED: &str = "__p.1";
 
+/// Lines of a contact's block from which on a test skips them where the gap turns out to be open.
+const LEAST_SKIPPED: usize = 16;
+
+/// A gap, lines up to it, lines after it.
+type Parted<'a> = (String, Vec<&'a Assignment>, Vec<&'a Assignment>);
+
 /// Forces of a text with contacts.
 pub struct Blocks<'a> {
     pub by_contact: &'a ByContact,
+    /// Gaps of all contacts.
+    pub gaps: &'a [Gap],
     pub program: &'a ContactProgram,
     pub scope: &'a Scope<'a>,
     pub runtime: &'a TokenStream,
@@ -88,11 +97,43 @@ impl Blocks<'_> {
                 continue;
             }
             let _ = writeln!(text, "if {CLOSED}[{}] {{", contact.contact);
-            lets(section(program), self.scope, &mut text);
-            text += &added;
+            let gap = self.gaps.get(contact.contact).map(|gap| gap.gap);
+            let section = section(program);
+            match gap.and_then(|gap| self.up_to(gap, section)) {
+                Some((gap, before, after)) => {
+                    before.iter().for_each(|line| print(line, self.scope, &mut text));
+                    let _ = writeln!(text, "if !T::all(T::less({}, {gap})) {{", self.scope.or_zero(None));
+                    after.iter().for_each(|line| print(line, self.scope, &mut text));
+                    text += &(added + "}\n");
+                }
+                None => {
+                    lets(section, self.scope, &mut text);
+                    text += &added;
+                }
+            }
             text += "}\n";
         }
         block(&(text + "__sum"), self.runtime)
+    }
+
+    /// The gap of a contact, the lines of its section that the gap needs, and the others. `None` where the section does not compute it, is
+    /// cut into parts, or has few other lines.
+    fn up_to<'b>(&self, gap: NodeId, section: &'b Section) -> Option<Parted<'b>> {
+        let is_short = section.lines.len() <= self.scope.lengths.body;
+        let mut needed = BTreeSet::from([gap]);
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        for line in section.lines.iter().rev() {
+            if line.values().iter().any(|value| needed.contains(value)) {
+                needed.extend(line.operands(self.scope.graph));
+                before.push(line);
+            } else {
+                after.push(line);
+            }
+        }
+        before.reverse();
+        after.reverse();
+        let is_worth_it = !before.is_empty() && LEAST_SKIPPED <= after.len();
+        (is_short && is_worth_it).then(|| (self.scope.operand(gap), before, after))
     }
 }
 

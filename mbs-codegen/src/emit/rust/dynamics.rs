@@ -79,7 +79,13 @@ pub fn bodies(
         if is_missing(slopes) { format!("[[{nan}; {n}]; {n}]") } else { matrix(rows.iter(), scope) }
     };
     let blocks = dynamics.by_contact.as_ref().zip(program.by_contact.as_ref());
-    let blocks = blocks.map(|(by_contact, program)| Blocks { by_contact, program, scope, runtime });
+    let blocks = blocks.map(|(by_contact, program)| Blocks {
+        by_contact,
+        gaps: &dynamics.gaps,
+        program,
+        scope,
+        runtime,
+    });
     let contact_slopes = |slopes, by_velocity| {
         blocks.as_ref().filter(|_| !is_missing(slopes)).map(|blocks| blocks.slopes(by_velocity))
     };

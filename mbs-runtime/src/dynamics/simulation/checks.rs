@@ -1,8 +1,11 @@
 //! Conditions that a start and a step must keep: rows, branches, working ranges.
 
 use crate::dynamics::formulations::projection::project_position;
-use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
-use crate::dynamics::integrators::event::{GROUP, Scrutiny, Unanswered, Watched, far_side, first_beyond};
+use crate::dynamics::integrators::event::enclosure::{
+    Enclosures, Functions, GroupOver, Part, can_be_enclosed,
+};
+use crate::dynamics::integrators::event::group::{GROUP, Watched, first_beyond};
+use crate::dynamics::integrators::event::{Scrutiny, Unanswered, far_side};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::{Counts, Model, Solved};
 use crate::failure::checks::{limit_failure, passed_failure};
@@ -313,7 +316,7 @@ where
     }
 
     fn enclosures(&mut self, first: usize, times: (R, R)) -> Option<Enclosures<R>> {
-        if self.errors.is_some() {
+        if self.errors.is_some() || !can_be_enclosed(self.model.mechanism) {
             return None;
         }
         let part = Part::of(self.from, times, &self.at)?;

@@ -1,7 +1,10 @@
 //! Contacts that close or open within a step.
 
-use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
-use crate::dynamics::integrators::event::{GROUP, Scrutiny, Watched, first_beyond};
+use crate::dynamics::integrators::event::Scrutiny;
+use crate::dynamics::integrators::event::enclosure::{
+    Enclosures, Functions, GroupOver, Part, can_be_enclosed,
+};
+use crate::dynamics::integrators::event::group::{GROUP, Watched, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind, checks};
@@ -64,7 +67,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         scrutiny: &Scrutiny<R>,
     ) -> Result<Option<R>, Failure> {
         let scrutiny = Scrutiny { bound: None, scale: self.gap_scale(), touching: false, ..*scrutiny };
-        let mut contacts = Contacts { model: self, from, evaluated, scrutiny, at };
+        let mut contacts = Contacts { model: self, from, evaluated, scrutiny, bounds: None, at };
         match first_beyond(&mut contacts, (start, end)) {
             Ok(found) => Ok(found.map(|(_, t)| t)),
             Err((contact, _)) => {
@@ -107,7 +110,48 @@ struct Contacts<'a, S: Dynamic<R, N, M>, R: Real, At, const N: usize, const M: u
     /// Contacts that the step evaluates.
     evaluated: &'a [bool],
     scrutiny: Scrutiny<R>,
+    /// Index of a contact, and the bounds of those from it on.
+    bounds: Option<(usize, [Option<R>; GROUP])>,
     at: At,
+}
+
+impl<S, R, At, const N: usize, const M: usize> Contacts<'_, S, R, At, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    At: Fn(R) -> IntegratorState<R, N, S::States>,
+{
+    /// Gaps from `first` on at `t` (s).
+    fn gaps(&self, t: R, first: usize) -> [Gap<R>; GROUP] {
+        let none = Gap { gap: R::constant(0.0), rate: R::constant(0.0), bound: None };
+        let (mut gaps, mut index) = ([none; GROUP], 0_usize);
+        self.model.gaps(self.from, (t, &(self.at)(t)), |gap| {
+            if let Some(place) = index.checked_sub(first).and_then(|place| gaps.get_mut(place)) {
+                *place = gap;
+            }
+            index += 1;
+        });
+        gaps
+    }
+}
+
+/// `true` if a contact stays closed by gaps and rates at both ends of a step of `h` (s): the cubic through them is below zero, by its third
+/// difference at least. `none`: size of a gap that is rounding.
+fn stays_closed<R: Real>(ends: [&Gap<R>; 2], h: R, none: R) -> bool {
+    let (three, third) = (R::constant(3.0), h * R::constant(1.0 / 3.0));
+    let [start, end] = ends;
+    let inner = [start.gap + third * start.rate, end.gap - third * end.rate];
+    let [after, before] = inner;
+    let off = none + (end.gap - start.gap - three * (before - after)).abs();
+    [start.gap, after, before, end.gap].into_iter().all(|coefficient| off < -coefficient)
+}
+
+/// `true` if a contact stays open by gaps and rates at both ends of a step of `h` (s), and by the bound at its start.
+fn stays_open<R: Real>([start, end]: [&Gap<R>; 2], h: R) -> bool {
+    let zero = R::constant(0.0);
+    let Some(bound) = start.bound else { return false };
+    let by_ends = reach(start.gap, start.rate, bound) + reach(end.gap, -end.rate, bound);
+    zero < start.gap && zero < end.gap && h < by_ends
 }
 
 impl<S, R, At, const N: usize, const M: usize> Watched<R> for Contacts<'_, S, R, At, N, M>
@@ -126,19 +170,43 @@ where
 
     /// The bound holds of an open gap.
     fn scrutiny(&mut self, member: usize, start: R) -> Scrutiny<R> {
-        let (mut index, mut bound) = (0, None);
-        if self.positive(member) {
-            self.model.gaps(self.from, (start, &(self.at)(start)), |gap| {
-                bound = if index == member { gap.bound } else { bound };
-                index += 1;
-            });
+        if !self.positive(member) {
+            return self.scrutiny;
         }
-        Scrutiny { bound, ..self.scrutiny }
+        let first = member - member % GROUP;
+        let bounds = match self.bounds {
+            Some((known, bounds)) if known == first => bounds,
+            _ => self.gaps(start, first).map(|gap| gap.bound),
+        };
+        self.bounds = Some((first, bounds));
+        Scrutiny { bound: bounds.get(member % GROUP).copied().flatten(), ..self.scrutiny }
     }
 
     fn enclosures(&mut self, first: usize, times: (R, R)) -> Option<Enclosures<R>> {
+        if !can_be_enclosed(self.model.mechanism) {
+            return None;
+        }
         let part = Part::of(self.from, times, &self.at)?;
         self.model.mechanism.enclosed(GroupOver { part, first, functions: Gaps })
+    }
+
+    /// A closed contact's force is evaluated at all stages, so what opens and closes again within a step is missed by no force. Of an open
+    /// one the bound alone tells.
+    fn clear_by_ends(&mut self, first: usize, (start, end): (R, R), near: &mut [bool; GROUP]) {
+        if self.scrutiny.resolution.is_some() {
+            return;
+        }
+        let [begun, ended] = [start, end].map(|t| self.gaps(t, first));
+        self.bounds = Some((first, begun.map(|gap| gap.bound)));
+        let none = motion::NO_VALUE.of::<R>() * self.scrutiny.scale;
+        for (member, (near, ends)) in near.iter_mut().zip(begun.iter().zip(&ended)).enumerate() {
+            let ends = [ends.0, ends.1];
+            *near = *near
+                && match self.positive(first + member) {
+                    true => !stays_open(ends, end - start),
+                    false => !stays_closed(ends, end - start, none),
+                };
+        }
     }
 
     fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {

@@ -1,6 +1,6 @@
 //! Bounds of functions of the state over a part of a step.
 
-use crate::dynamics::integrators::event::GROUP;
+use crate::dynamics::integrators::event::group::GROUP;
 use crate::dynamics::integrators::event::interpolant::{Interpolant, NODES};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::mechanism::dynamic::Dynamic;
@@ -169,6 +169,21 @@ where
         });
         enclosures
     }
+}
+
+/// Asks a mechanism for intervals, and nothing else.
+struct Asked;
+
+impl<T: Scalar, const N: usize, const M: usize> WithIntervals<T, N, M> for Asked {
+    type Output = ();
+
+    fn at<S: Dynamic<Interval<T::Real>, N, M>>(self, _: &S) {}
+}
+
+/// `true` if parts of a motion of `mechanism` can be enclosed.
+#[inline(always)]
+pub fn can_be_enclosed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(mechanism: &S) -> bool {
+    mechanism.enclosed(Asked).is_some()
 }
 
 /// Enclosures of a group of functions.

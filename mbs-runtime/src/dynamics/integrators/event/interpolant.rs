@@ -1,8 +1,11 @@
 //! The polynomial of degree 8 through nine equally spaced values, bounded by its Bernstein coefficients.
 
 use crate::dynamics::integrators::event::Unanswered;
+use crate::dynamics::integrators::event::passage;
+use crate::dynamics::integrators::event::passage::Passage;
 use crate::scalar::interval::Interval;
 use crate::scalar::number::Real;
+use crate::tolerances::motion;
 
 /// Instants of a part.
 pub(super) const NODES: usize = 9;
@@ -30,7 +33,11 @@ const DIFFERENCE: [f64; NODES] = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.
 /// less than ten times the eighth where the values show the function at all.
 const OFF: f64 = 0.125;
 
+/// Errors of the polynomial that are kept between it and zero where no more values are asked for.
+const DOUBTED: f64 = 4.0;
+
 /// A function within a part of a step.
+#[derive(Clone, Copy)]
 pub(super) struct Interpolant<R> {
     start: R,
     end: R,
@@ -65,6 +72,33 @@ impl<R: Real> Interpolant<R> {
             Some(index) => Err(Unanswered::Undefined(Self::instant(start, end, index))),
             None => Ok(Self::of(values, start, end)),
         }
+    }
+
+    /// The first half of the part, up to `middle` (s): every second value is one of the whole part.
+    pub(super) fn first_half(
+        &self,
+        function: &mut impl FnMut(R) -> R,
+        middle: R,
+    ) -> Result<Self, Unanswered<R>> {
+        let mut values = [R::constant(0.0); NODES];
+        for (index, value) in values.iter_mut().enumerate() {
+            let known = self.values.get(index / 2).filter(|_| index % 2 == 0);
+            *value = match known {
+                Some(known) => *known,
+                None => function(Self::instant(self.start, middle, index)),
+            };
+        }
+        Self::through_values(values, self.start, middle)
+    }
+
+    /// `true` if it is of the part between two times (s).
+    pub(super) fn is_between(&self, start: R, end: R) -> bool {
+        self.start == start && self.end == end
+    }
+
+    /// `true` if the first half of it is the part between two times (s).
+    pub(super) fn is_halved_by(&self, start: R, middle: R) -> bool {
+        self.start == start && start + R::constant(0.5) * (self.end - start) == middle
     }
 
     fn of(values: [R; NODES], start: R, end: R) -> Self {
@@ -130,6 +164,28 @@ impl<R: Real> Interpolant<R> {
     fn off_chord(&self, bound: R) -> R {
         let width = (self.end - self.start) * R::constant(1.0 / (NODES - 1) as f64);
         bound * width * width * R::constant(0.125)
+    }
+
+    /// The first passage of the function through zero from `side`, or from the side on which it leaves zero where it begins there but for
+    /// `none`. The side goes with it.
+    pub(super) fn first_passage(&self, side: Option<R>, none: R) -> (R, Passage<R>) {
+        let [first, second, ..] = self.coefficients;
+        let at_zero = side.is_none() && first.abs() <= none;
+        let side = side.unwrap_or(if at_zero { second } else { first }).sign();
+        let rounding = motion::BLURRED.of::<R>() * self.largest();
+        let off = (R::constant(DOUBTED) * self.off()).max(rounding);
+        (side, passage::first(self.coefficients.map(|coefficient| side * coefficient), off, at_zero))
+    }
+
+    /// Size of its change a part at the beginning.
+    pub(super) fn slope(&self) -> R {
+        let [first, second, ..] = self.coefficients;
+        R::constant((NODES - 1) as f64) * (second - first).abs()
+    }
+
+    /// Times (s) of shares of the part.
+    pub(super) fn time_of(&self, share: R) -> R {
+        if share == R::constant(1.0) { self.end } else { self.start + (self.end - self.start) * share }
     }
 
     /// `true` if the function stays on `side` of zero.

@@ -6,19 +6,19 @@
 //! halved.
 
 pub(crate) mod enclosure;
+pub(crate) mod group;
+#[cfg(test)]
+mod group_tests;
 pub(crate) mod interpolant;
 pub(crate) mod monitor;
+pub(crate) mod passage;
 #[cfg(test)]
 mod tests;
 
-use crate::dynamics::integrators::event::enclosure::Enclosures;
-use crate::dynamics::integrators::event::interpolant::{Interpolant, NODES};
+use crate::dynamics::integrators::event::interpolant::Interpolant;
 use crate::mechanism::enclosure::Enclosure;
 use crate::scalar::number::Real;
 use crate::tolerances::motion;
-
-/// Functions that are evaluated together at most.
-pub const GROUP: usize = 8;
 
 /// Halvings are at most this many: more than the digits of an `f64`.
 const MOST_ITERATIONS: u32 = 80;
@@ -152,6 +152,16 @@ pub fn first_reach<R: Real>(
     side: R,
     scrutiny: &Scrutiny<R>,
 ) -> Result<Option<Reach<R>>, Unanswered<R>> {
+    first_reach_known(function, (start, end), side, (scrutiny, None))
+}
+
+/// The same, where nine values of the function between both times may be known.
+fn first_reach_known<R: Real>(
+    function: &mut impl Function<R>,
+    (start, end): (R, R),
+    side: R,
+    (scrutiny, known): (&Scrutiny<R>, Option<Interpolant<R>>),
+) -> Result<Option<Reach<R>>, Unanswered<R>> {
     let parts = scrutiny.parts(end - start);
     let is_enclosed = function.enclosure(start, end).is_some();
     let left = match scrutiny.bound {
@@ -159,7 +169,8 @@ pub fn first_reach<R: Real>(
         None if is_enclosed => MOST_ENCLOSED_PARTS,
         None => MOST_PARTS,
     };
-    let mut search = Search { side: side.sign(), scrutiny, scale: scrutiny.scale, left, is_enclosed };
+    let known = known.filter(|_| parts == 1);
+    let mut search = Search { side: side.sign(), scrutiny, scale: scrutiny.scale, left, is_enclosed, known };
     let at = |part: u32| match part == parts {
         true => end,
         false => start + (end - start) * R::constant(f64::from(part) / f64::from(parts)),
@@ -191,6 +202,8 @@ struct Search<'a, R> {
     left: u32,
     /// `true` if bounds of the function are known.
     is_enclosed: bool,
+    /// Nine values of the next part, or of one that it is the first half of.
+    known: Option<Interpolant<R>>,
 }
 
 impl<R: Real> Search<'_, R> {
@@ -216,7 +229,11 @@ impl<R: Real> Search<'_, R> {
                 continue;
             }
             let mut values = |t: R| function.value(t);
-            let part = Interpolant::through(&mut values, from, to)?;
+            let part = match self.known.take() {
+                Some(part) if part.is_between(from, to) => part,
+                Some(part) if part.is_halved_by(from, to) => part.first_half(&mut values, to)?,
+                _ => Interpolant::through(&mut values, from, to)?,
+            };
             self.scale = self.scale.max(part.largest());
             let rough = to - from <= whole * R::constant(ROUGH);
             let told = enclosure.filter(|enclosure| !enclosure.is_exhausted(of_twice));
@@ -228,6 +245,7 @@ impl<R: Real> Search<'_, R> {
                 Verdict::Touched(index) => return Ok(Some(part.time(index))),
                 Verdict::Unclear if !smallest => {
                     width = half * (to - from);
+                    self.known = Some(part);
                     continue;
                 }
                 Verdict::Unclear if self.left == 0 && self.scrutiny.bound.is_some() && !self.is_enclosed => {
@@ -373,124 +391,4 @@ fn first_zero<R: Real, X>(
         }
     }
     Ok(right)
-}
-
-/// Functions of the time that are evaluated together.
-pub trait Watched<R> {
-    /// Their number.
-    fn count(&self) -> usize;
-    /// Those from `first` on at `t` (s), as many as there are and as fit.
-    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]);
-    /// `true` if a function begins positive whatever its value is; otherwise the first value that is not zero gives the side.
-    fn positive(&self, member: usize) -> bool;
-    /// Resolution and bounds of the search in a step that begins at `start` (s).
-    fn scrutiny(&mut self, member: usize, start: R) -> Scrutiny<R>;
-    /// Bounds of those from `first` on between two times (s), where any are known.
-    fn enclosures(&mut self, _first: usize, _times: (R, R)) -> Option<Enclosures<R>> {
-        None
-    }
-}
-
-/// Index of a function among several, with its zero or with the reason for which it has no answer.
-pub type Member<X> = (usize, X);
-
-/// The first of several functions that goes beyond zero between `start` and `end` (s), from the side on which it begins.
-///
-/// # Errors
-/// [`Unanswered`].
-pub fn first_beyond<R: Real>(
-    watched: &mut impl Watched<R>,
-    (start, mut end): (R, R),
-) -> Result<Option<Member<R>>, Member<Unanswered<R>>> {
-    let mut found = None;
-    let mut first = 0;
-    while first < watched.count() {
-        let mut near = [false; GROUP];
-        near_zero(watched, first, (start, end), &mut near).map_err(|(member, why)| (first + member, why))?;
-        for member in (0..GROUP).filter(|member| near.get(*member) == Some(&true)) {
-            let scrutiny = watched.scrutiny(first + member, start);
-            let positive = watched.positive(first + member);
-            let mut function = One { watched, first, member };
-            let unanswered = |why| (first + member, why);
-            let begin = match positive {
-                true => Some((start, R::constant(1.0))),
-                false => monitor::side(&mut function, (start, end), scrutiny.scale).map_err(unanswered)?,
-            };
-            let Some((from, side)) = begin else { continue };
-            if let Some(reach) =
-                first_reach(&mut function, (from, end), side, &scrutiny).map_err(unanswered)?
-            {
-                end = reach.t;
-                found = Some((first + member, reach.t));
-            }
-        }
-        first += GROUP;
-    }
-    Ok(found)
-}
-
-/// One of several functions.
-struct One<'a, W> {
-    watched: &'a mut W,
-    /// First of its group, and its place there.
-    first: usize,
-    member: usize,
-}
-
-impl<R: Real, W: Watched<R>> Function<R> for One<'_, W> {
-    fn value(&mut self, t: R) -> R {
-        let mut values = [R::constant(0.0); GROUP];
-        self.watched.values(t, self.first, &mut values);
-        values.get(self.member).copied().unwrap_or(R::constant(0.0))
-    }
-
-    fn enclosure(&mut self, from: R, to: R) -> Option<Enclosure<R>> {
-        let enclosures = self.watched.enclosures(self.first, (from, to))?;
-        enclosures.get(self.member).copied().flatten()
-    }
-}
-
-/// Marks which functions of a group come near zero, or are looked at more closely than by nine values.
-fn near_zero<R: Real>(
-    watched: &mut impl Watched<R>,
-    first: usize,
-    (start, end): (R, R),
-    near: &mut [bool; GROUP],
-) -> Result<(), Member<Unanswered<R>>> {
-    let count = watched.count().saturating_sub(first);
-    let enclosures = watched.enclosures(first, (start, end)).unwrap_or([None; GROUP]);
-    let (positive, negative) = (R::constant(1.0), R::constant(-1.0));
-    let mut all_clear = true;
-    for (member, (near, enclosure)) in near.iter_mut().zip(&enclosures).enumerate().take(count) {
-        let stays = |enclosure: &Enclosure<R>| {
-            enclosure.stays(positive) || !watched.positive(first + member) && enclosure.stays(negative)
-        };
-        *near = !enclosure.as_ref().is_some_and(stays);
-        all_clear = all_clear && !*near;
-    }
-    if all_clear {
-        return Ok(());
-    }
-    let mut rows = [[R::constant(0.0); GROUP]; NODES];
-    for (index, row) in rows.iter_mut().enumerate() {
-        watched.values(Interpolant::instant(start, end, index), first, row);
-    }
-    let open = near.iter_mut().zip(&enclosures).enumerate().take(count);
-    for (member, (near, enclosure)) in open.filter(|(_, (near, _))| **near) {
-        let scrutiny = watched.scrutiny(first + member, start);
-        let positive = watched.positive(first + member);
-        let mut column = [R::constant(0.0); NODES];
-        for (value, row) in column.iter_mut().zip(&rows) {
-            row.get(member).into_iter().for_each(|known| *value = *known);
-        }
-        let part = Interpolant::through_values(column, start, end).map_err(|why| (member, why))?;
-        let side = if positive { R::constant(1.0) } else { part.first() };
-        let scale = part.largest().max(scrutiny.scale);
-        let is_enclosed = enclosure.is_some();
-        let search = Search { side: side.sign(), scrutiny: &scrutiny, scale, left: 1, is_enclosed };
-        let small = !positive && part.first().abs() <= motion::NO_VALUE.of::<R>() * scale;
-        let clear = !small && matches!(search.verdict(&part, (false, *enclosure)), Verdict::Clear);
-        *near = scrutiny.parts(end - start) > 1 || !clear;
-    }
-    Ok(())
 }

@@ -14,6 +14,9 @@ const HALVINGS: u32 = 40;
 /// Values of a function next to one that counts as zero, over that one, from which on it is on a side.
 const AWAY: f64 = 4.0;
 
+/// Share of what counts as zero.
+const FAR_BELOW: f64 = 0.25;
+
 /// Event at which a run stopped, so that the next run does not stop there again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stopped<R> {
@@ -76,7 +79,9 @@ impl<R: Real> Monitor<R> {
             let side = match self.side {
                 Some(side) => side,
                 None => {
-                    let Some(found) = away(&mut function, (from, end), self.none)? else { return Ok(None) };
+                    let none = self.none.max(least(&mut function, (from, end))?);
+                    let all = R::constant(f64::INFINITY);
+                    let Some(found) = away(&mut function, (from, end), (none, all))? else { return Ok(None) };
                     from = found.0;
                     found.1
                 }
@@ -95,18 +100,24 @@ impl<R: Real> Monitor<R> {
     }
 }
 
-/// The side on which a function begins that may be zero at the start but for rounding, and from when on (s).
+/// The side on which a function begins that may be zero at the start but for rounding, and from when on (s). `known`: nine values of it,
+/// where there are.
 pub(super) fn side<R: Real>(
     function: &mut impl Function<R>,
     (start, end): (R, R),
     scale: R,
+    known: Option<&Interpolant<R>>,
 ) -> Result<Option<(R, R)>, Unanswered<R>> {
-    let none = motion::NO_VALUE.of::<R>() * scale;
-    let (value, least) = (function.value(start), none.max(least(function, (start, end))?));
+    let part = match known {
+        Some(part) => *part,
+        None => Interpolant::through(&mut |t| function.value(t), start, end)?,
+    };
+    let (value, largest) = (part.first(), part.largest());
+    let least = motion::NO_VALUE.of::<R>() * scale.max(largest);
     if least < value.abs() {
         return Ok(Some((start, value.sign())));
     }
-    away(function, (start, end), least.max(R::constant(AWAY) * value.abs()))
+    away(function, (start, end), (least.max(R::constant(AWAY) * value.abs()), part.slope()))
 }
 
 /// Roundings of the largest of nine values.
@@ -114,18 +125,22 @@ fn least<R: Real>(function: &mut impl Function<R>, (start, end): (R, R)) -> Resu
     Ok(motion::NO_VALUE.of::<R>() * Interpolant::through(&mut |t| function.value(t), start, end)?.largest())
 }
 
-/// The first time (s) after the start from which a function is larger than `none` and rounding, with its sign.
+/// The first time (s) after the start from which a function is larger than `none`, with its sign. `slope`: its change a step at the start;
+/// where that leaves it far below `none` nothing is evaluated.
 fn away<R: Real>(
     function: &mut impl Function<R>,
     (start, end): (R, R),
-    none: R,
+    (none, slope): (R, R),
 ) -> Result<Option<(R, R)>, Unanswered<R>> {
-    let none = none.max(least(function, (start, end))?);
     let (half, mut share) = (R::constant(0.5), R::constant(1.0));
     for _ in 0..HALVINGS {
         share = half * share;
     }
     for _ in 0..=HALVINGS {
+        if share * slope < R::constant(FAR_BELOW) * none {
+            share = share + share;
+            continue;
+        }
         let t = (start + (end - start) * share).min(end);
         let value = function.value(t);
         if is_nan(value) {
