@@ -56,7 +56,7 @@ const BOUNDS: &[(&str, &str)] = &[
     ),
     (
         "8-lane batch step, ten loops, a mechanism, against the single step",
-        "a single step solves the rates of a block while the next one waits for its position; lanes go stage by stage through all blocks, where the processor has eight mechanisms to go on with. The single step became a quarter shorter that way, the lanes take as long as they did.",
+        "lanes that fill one register go block after block, as a single step does, and wider ones in such groups. Each group waits for its divisions as long as a single step, and takes more instructions: choices by masks in place of branches, signs of determinants lane by lane.",
     ),
     (
         "time a step, forty loops over ten (at most)",

@@ -89,7 +89,7 @@ where
             to,
             zero.less(moving),
         );
-        if !S::GroupNumber::all(trial.quick) || self.notes.passes(first, trial.orientation.as_ref()) {
+        if !S::GroupNumber::all(trial.quick) || self.notes.passes_in_group(first, &trial) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
             self.judge_group(group, &doubtful, [from, to], plain);

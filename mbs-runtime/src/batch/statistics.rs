@@ -72,11 +72,23 @@ impl<R: Real, const L: usize> Notes<R, L> {
         }
     }
 
-    /// `true` if any lane from `first` on passes a singular position with a step to such signs.
+    /// `true` if any lane passes a singular position with a step to such signs.
     #[inline(always)]
-    pub fn passes(&self, first: usize, orientation: &[u64]) -> bool {
-        let signs = self.orientation.iter().skip(first).zip(orientation);
+    pub fn passes(&self, orientation: &[u64; L]) -> bool {
+        let signs = self.orientation.iter().zip(orientation);
         signs.fold(0, |turned, (before, after)| turned | (before ^ after)) != 0
+    }
+
+    /// As [`passes`](Self::passes), with the step `trial` of the lanes from `first` on.
+    #[inline(always)]
+    pub fn passes_in_group<P: Scalar<Real = R>, const N: usize>(
+        &self,
+        first: usize,
+        trial: &FastStep<P, N>,
+    ) -> bool {
+        // Lane by lane: signs that were put down one by one would be waited for if they were loaded together.
+        let turned = |lane: usize| self.orientation(first.saturating_add(lane)) ^ trial.orientation(lane);
+        (0..P::LANES).fold(0, |all, lane| all | turned(lane)) != 0
     }
 
     #[inline(always)]
