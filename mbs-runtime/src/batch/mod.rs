@@ -125,8 +125,11 @@ where
         if const { !S::PHASES.is_empty() } {
             self.mechanism.advance_phases(from, to);
         }
-        let plain =
-            if const { Self::IN_GROUPS } { self.group_by_group(from, to) } else { self.together(from, to) };
+        let plain = if const { Self::IN_GROUPS } {
+            self.group_by_group(from, to)
+        } else {
+            self.together([from, to], &t)
+        };
         if let Some(plain) = plain {
             return Some(self.apart(plain, &before, t));
         }
@@ -138,16 +141,16 @@ where
         None
     }
 
-    /// Steps all lanes at once; returns the lanes that have moved, unless all have.
+    /// Steps all lanes at once to their times `t` (s); returns the lanes that have moved, unless all have.
     #[inline(always)]
-    fn together(&mut self, from: Lanes<R, L>, to: Lanes<R, L>) -> Option<LaneMask<R, L>> {
+    fn together(&mut self, [from, to]: [Lanes<R, L>; 2], t: &[R; L]) -> Option<LaneMask<R, L>> {
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = FastStep::of(mechanism, parameters, &start, to, !self.waits);
         if !Lanes::<R, L>::all(trial.quick) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
-            return Some(self.judged(&doubtful, from, to));
+            return Some(self.judged(&doubtful, t));
         }
         self.notes.follow(&trial, self.margin, to - from);
         self.margin = trial.margin;
@@ -163,12 +166,9 @@ where
     /// Moves on the lanes of a step of all lanes that is plain there; returns these.
     #[cold]
     #[inline(never)]
-    fn judged(
-        &mut self,
-        trial: &FastStep<Lanes<R, L>, N>,
-        from: Lanes<R, L>,
-        to: Lanes<R, L>,
-    ) -> LaneMask<R, L> {
+    fn judged(&mut self, trial: &FastStep<Lanes<R, L>, N>, t: &[R; L]) -> LaneMask<R, L> {
+        // The times themselves stay in registers, too.
+        let (from, to) = self.span(*t);
         let Batch { q, qd, qdd, margin, weights, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let scales = self.mechanism.coordinate_scales(&self.parameters);

@@ -1,7 +1,8 @@
 //! Ends of sticking and of sliding within a step.
 
 use crate::dynamics::formulations::stiction::{size, sticks};
-use crate::dynamics::integrators::event::{GROUP, Scrutiny, Watched, first_beyond};
+use crate::dynamics::integrators::event::Scrutiny;
+use crate::dynamics::integrators::event::group::{GROUP, Watched, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
