@@ -61,8 +61,8 @@ impl Visit<'_> for Found<'_> {
                 syn::ImplItem::Type(kind) => kind.ident.to_string(),
                 other => panic!("{}", other.to_token_stream()),
             };
-            // The text, the scene's name, and the copy of the whole struct.
-            if !["SOURCE", "SCENE", "Lane", "lane"].contains(&key.as_str()) {
+            // The text, the scene's name, and copies of the whole struct.
+            if !["SOURCE", "SCENE", "Lane", "lane", "Group", "group"].contains(&key.as_str()) {
                 self.items.insert(format!("{name}::{key}"), item.to_token_stream().to_string());
             }
         }

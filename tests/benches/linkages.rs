@@ -36,6 +36,12 @@ const LARGEST_ERROR: f64 = 1e-10;
 /// Largest linkage that a dense peer is worth being compared with.
 const LARGEST: usize = 24;
 
+/// Linkages whose steps are timed with constants in place of parameters too.
+const WITH_CONSTANTS: [&str; 4] = ["four_bar", "slider_crank", "stephenson", "jansen"];
+
+/// Largest time of a step with parameters over that with constants.
+const MOST_OF_CONSTANTS: f64 = 1.03;
+
 /// A text with what the peers need.
 struct Linkage {
     /// Name of the module and of the peer's functions.
@@ -102,10 +108,15 @@ fn measured(rounds: &str, only: Option<&[&str]>) -> Result<String, String> {
     linkages.retain(|linkage| only.is_none_or(|only| only.contains(&linkage.name.as_str())));
     let program = build(&linkages)?;
     let lines = tools::output(Command::new(program).arg(rounds), "it was built a moment ago")?;
-    let (mut found, mut faults, mut notes) = (Vec::new(), Vec::new(), String::new());
+    let (mut found, mut constants) = (Vec::new(), Vec::new());
+    let (mut faults, mut notes) = (Vec::new(), String::new());
     for line in lines.lines() {
         let (name, rest) = line.split_once(' ').unwrap_or((line, ""));
         let Some(linkage) = linkages.iter().find(|linkage| linkage.name == name) else { continue };
+        if let Some(ratio) = rest.strip_prefix("parameters ") {
+            constants.push((linkage, ratio.parse().unwrap_or(f64::NAN)));
+            continue;
+        }
         let numbers: Vec<f64> = rest.split(' ').filter_map(|word| word.parse().ok()).collect();
         let [error, peers_error, evaluation, step, dense, time, step_time] = numbers[..] else {
             let _ = writeln!(notes, "- {name}: {rest}");
@@ -117,7 +128,7 @@ fn measured(rounds: &str, only: Option<&[&str]>) -> Result<String, String> {
         let ratios = [evaluation, step, dense];
         found.push((linkage, Ratios { ratios, times: [time, step_time], errors: [error, peers_error] }));
     }
-    if faults.is_empty() { Ok(table(&found, &notes)) } else { Err(faults.join("\n")) }
+    if faults.is_empty() { Ok(table(&found, &constants, &notes)) } else { Err(faults.join("\n")) }
 }
 
 /// Ready mechanisms of as many rows as coordinates, without functions of the caller.
@@ -231,8 +242,27 @@ fn program(linkages: &[Linkage]) -> String {
             );
         }
         let _ = writeln!(modules, "mod {name} {{\n    mbs_runtime::mechanism! {{\n{text}\n    }}\n}}");
+        if WITH_CONSTANTS.contains(&name.as_str()) {
+            let text = with_constants(text);
+            let _ =
+                writeln!(modules, "mod {name}_const {{\n    mbs_runtime::mechanism! {{\n{text}\n    }}\n}}");
+            let _ = writeln!(
+                calls,
+                "    as_parameters::<{name}::{type_name}, {name}_const::{type_name}, {coordinates}>(\"{name}\", {duration:?}, rounds);"
+            );
+        }
     }
     PROGRAM.replace("// LINKAGES\n", &calls).replace("// FUNCTIONS\n", &functions) + &modules
+}
+
+/// The text with constants in place of parameters, and without presets, which set parameters.
+fn with_constants(text: &str) -> String {
+    let mut kept = text.to_string();
+    while let Some(start) = kept.find("preset ") {
+        let Some(end) = kept[start..].find('}') else { break };
+        kept.replace_range(start..=start + end, "");
+    }
+    kept.replace("param ", "const ")
 }
 
 /// Smallest, median and largest of the ratios.
@@ -242,7 +272,7 @@ fn spread(mut ratios: Vec<f64>) -> [f64; 3] {
     [at(0), at(ratios.len() / 2), at(ratios.len().saturating_sub(1))]
 }
 
-fn table(found: &[(&Linkage, Ratios)], notes: &str) -> String {
+fn table(found: &[(&Linkage, Ratios)], constants: &[(&Linkage, f64)], notes: &str) -> String {
     let mut text = String::from(
         "# Linkages against their peers\n\n\
          `cargo bench -p mbs-tests --bench linkages -- --docs` writes this file. Ratios are the peer's time over ours, medians of rounds \
@@ -277,6 +307,16 @@ fn table(found: &[(&Linkage, Ratios)], notes: &str) -> String {
         ["evaluation, all", "step, all, against LU", "step, all, against nalgebra"].into_iter().enumerate()
     {
         line(work, found.iter().map(|(_, ratios)| ratios.ratios[index]).collect(), [f64::NAN; 2]);
+    }
+    if !constants.is_empty() {
+        let _ = write!(
+            text,
+            "\n| step with dimensions as `param`, time over that with `const` | least of each | must |\n|---|---|---|\n"
+        );
+        for (linkage, ratio) in constants {
+            let name = linkage.name.replace('_', " ");
+            let _ = writeln!(text, "| {name} | {ratio:.3} | at most {MOST_OF_CONSTANTS:.2} |");
+        }
     }
     text += "\n| linkage | coordinates | structure | evaluation | step, LU | step, nalgebra | evaluation, ns | step, ns | error | peer's error |\n\
              |---|---|---|---|---|---|---|---|---|---|\n";

@@ -271,6 +271,39 @@ where
     );
 }
 
+/// Time of a step with dimensions as parameters over that with constants, in rounds in which both take turns.
+fn as_parameters<S, C, const N: usize>(name: &str, duration: f64, rounds: usize)
+where
+    S: Kinematic<f64, N> + Default + Copy + 'static,
+    C: Kinematic<f64, N> + Default + Copy + 'static,
+    Stepper<S, f64, N>: Clone,
+    Stepper<C, f64, N>: Clone,
+{
+    let (Some(parameters), Some(constants)) = (motion::<S, N>(duration), motion::<C, N>(duration)) else {
+        return println!("{name} parameters: it does not assemble");
+    };
+    let times = timed(&mut [(f64::from(STEPS), parameters), (f64::from(STEPS), constants)], rounds);
+    let least = |case: usize| times[case].iter().copied().fold(f64::INFINITY, f64::min);
+    println!("{name} parameters {}", least(0) / least(1));
+}
+
+/// The steps of a motion.
+fn motion<S, const N: usize>(duration: f64) -> Option<Box<dyn FnMut()>>
+where
+    S: Kinematic<f64, N> + Default + Copy + 'static,
+    Stepper<S, f64, N>: Clone,
+{
+    let (mechanism, h) = (S::default(), 0.999 * duration / f64::from(STEPS));
+    let start = Stepper::assemble(mechanism, mechanism.guess(&mechanism.parameters()), 0.0).ok()?;
+    Some(Box::new(move || {
+        let mut stepper = black_box(&start).clone();
+        for k in 1..=STEPS {
+            black_box(stepper.advance_to(f64::from(k) * h).is_ok());
+        }
+        black_box(stepper.q());
+    }))
+}
+
 #[inline(never)]
 fn evaluated<S, const N: usize, const Z: usize>(
     mechanism: &S,
