@@ -78,7 +78,7 @@ fn assert_constants<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(_: S)
         };
     }
     constants!(compare);
-    assert!(<Fed<S> as Mechanism<f64, N, M>>::HAS_SIGNALS);
+    const { assert!(<Fed<S> as Mechanism<f64, N, M>>::HAS_SIGNALS) };
     macro_rules! same {
         ($contract:ident: $($name:ident),*) => {
             $(assert_eq!(
