@@ -42,7 +42,7 @@ where
         group > 1 && group < L && L.is_multiple_of(group) && (S::BLOCK_BY_BLOCK || N > FEW)
     };
 
-    /// What the groups need of `mechanism`.
+    /// Parts of `mechanism` that the groups need.
     pub(super) fn prepared(mechanism: &S) -> [Option<Prepared<S::Group, S::GroupNumber, N, M>>; L] {
         from_fn(|group| match const { Self::IN_GROUPS } && group < L / S::GroupNumber::LANES {
             true => Some(Prepared::of(&mechanism.group(group * S::GroupNumber::LANES))),

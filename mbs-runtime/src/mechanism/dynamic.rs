@@ -162,7 +162,7 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, 
 
     /// Frictions with stiction, in the order of [`friction_rows`](Self::friction_rows).
     const FRICTIONS: &'static [Entry] = &[];
-    /// How they stick or slide, in the order of [`FRICTIONS`](Self::FRICTIONS). [`force`](Self::force) has the friction of those that
+    /// Their modes, sticking or sliding, in the order of [`FRICTIONS`](Self::FRICTIONS). [`force`](Self::force) has the friction of those that
     /// slide and the [`Grip::force`] of those that stick.
     #[inline]
     fn grips(_parameters: &Self::Parameters) -> &[Grip<T>] {

@@ -2,7 +2,7 @@
 
 use crate::scalar::number::Scalar;
 
-/// How a friction with stiction stands: constant within a step, changed at events between steps.
+/// Mode of a friction with stiction: constant within a step, changed at events between steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip<T> {
     /// Direction in which it slides: 1, −1, or 0 where it sticks.

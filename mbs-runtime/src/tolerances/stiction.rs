@@ -5,7 +5,7 @@ use crate::tolerances::Law;
 /// Least over largest pivot of W, scaled to 1, from which rows that stick are independent: half the digits are left.
 pub(crate) const DEPENDENT: Law = Law::root(1.0);
 
-/// What is added to the diagonal of a singular W, scaled to 1. Forty steps with it find the shortest solution where directions of W are
+/// Term added to the diagonal of a singular W, scaled to 1. Forty steps with it find the shortest solution where directions of W are
 /// above it; rounding over it is what the shares of a force have.
 pub(crate) const RAISED: Law = Law::fourth_root(1.0);
 

@@ -135,7 +135,7 @@ fn methods_agree() {
     assert!(50 * refused <= SEEDS, "{refused} of {SEEDS}");
 }
 
-/// Where frictions share a force in a ratio that counts, the motion is refused, and never one of several.
+/// A motion whose frictions share a force in a ratio that counts is refused, and never one of several.
 #[test]
 fn redundant_frictions_agree_or_are_refused() {
     let mut right = 0;

@@ -1,7 +1,7 @@
 //! Modes of frictions at zero speed: the complementarity problem of accelerations and friction forces.
 //!
 //! A row at rest sticks with |h| below its limit, or slides with s̈ of the sign of its direction. Both together are a linear
-//! complementarity problem, solved by principal pivots: one row at a time changes, the one that exceeds its limit most, then the first.
+//! complementarity problem, solved by principal pivots. One row at a time changes: the one that exceeds its limit most, then the first.
 //! So normal forces that depend on the multipliers are exact in each trial. Where pivots come back to modes that they had, all
 //! modes of up to four rows are tried, those with the fewest sliding rows first. A force between the limits of sliding and of sticking
 //! allows both; the row then sticks.

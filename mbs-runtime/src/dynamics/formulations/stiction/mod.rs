@@ -234,7 +234,7 @@ where
     }
 }
 
-/// What leads a state to where frictions do not stick.
+/// Correction that leads a state to where frictions stick.
 struct Drift<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     t: R,

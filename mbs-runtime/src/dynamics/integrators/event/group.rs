@@ -98,7 +98,7 @@ fn is_told<R: Real>(scrutiny: &Scrutiny<R>, (start, end): (R, R)) -> bool {
     scrutiny.bound.is_none() && !scrutiny.touching && scrutiny.parts(end - start) == 1
 }
 
-/// What the polynomial of a step tells of a function.
+/// Verdict of the polynomial of a step on a function.
 enum Told<R> {
     Clear,
     /// It goes beyond zero at this time (s).

@@ -17,7 +17,7 @@ const MOST_STEPS: u32 = 24;
 /// Bernstein coefficients.
 type Coefficients<R> = [R; NODES];
 
-/// What a polynomial tells of a function that is at most `off` away from it.
+/// Verdict of a polynomial on a function that is at most `off` away from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Passage<R> {
     /// It stays on its side.
