@@ -255,12 +255,14 @@ fn program(linkages: &[Linkage]) -> String {
     PROGRAM.replace("// LINKAGES\n", &calls).replace("// FUNCTIONS\n", &functions) + &modules
 }
 
-/// The text with constants in place of parameters, and without presets, which set parameters.
+/// The text with constants in place of parameters, and without presets and span, which name parameters.
 fn with_constants(text: &str) -> String {
     let mut kept = text.to_string();
-    while let Some(start) = kept.find("preset ") {
-        let Some(end) = kept[start..].find('}') else { break };
-        kept.replace_range(start..=start + end, "");
+    for (word, end) in [("preset ", '}'), ("span ", ';')] {
+        while let Some(start) = kept.find(word) {
+            let Some(length) = kept[start..].find(end) else { break };
+            kept.replace_range(start..=start + length, "");
+        }
     }
     kept.replace("param ", "const ")
 }
