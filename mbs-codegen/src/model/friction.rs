@@ -19,16 +19,16 @@ impl Resolver<'_> {
         let (along, normal) = (field("along")?, field("normal")?);
         let coefficient = field("coefficient")?;
         let span = name.span;
-        let force = if let Some(most) = given.scalar("sticks") {
+        let [force, sliding] = if let Some(most) = given.scalar("sticks") {
             let index = self.dynamics().sticking.len();
-            let [limit, force] = self.elaborate(Reach::Force, |work| {
+            let [limit, force, sliding] = self.elaborate(Reach::Force, |work| {
                 set_valued(work, index, [along, normal, coefficient, most], given, name)
             })?;
             self.dynamics().sticking.push(Sticking { name: full.clone(), along, limit, span });
-            force
+            [force, sliding]
         } else {
             let speed = field("speed")?;
-            self.elaborate(Reach::Force, |work| {
+            let force = self.elaborate(Reach::Force, |work| {
                 let rate = work.expressions.push(Node::Rate(along, 1));
                 let ratio = work.push_binary(Binary::Divide, rate, speed, span)?;
                 let direction = work.push_unary(Unary::Tanh, ratio, span)?;
@@ -37,11 +37,55 @@ impl Resolver<'_> {
                 let force = work.push_binary(Binary::Multiply, limit, direction, span)?;
                 let force = with_drag(work, force, rate, given, name)?;
                 work.push_unary(Unary::Negate, force, span)
-            })?
+            })?;
+            [force; 2]
         };
-        self.names.seen.define(&name.text, Seen::Friction { along, force });
+        self.names.seen.define(&name.text, Seen::Friction { along, force, sliding });
         self.force(name, full, Action::Work(vec![(force, along)]));
         Ok(())
+    }
+
+    /// Reports forces and rates made of a force that holds: it is what the balance with all other forces leaves, so these cannot need it.
+    pub(super) fn check_holding(&mut self) {
+        let Some(dynamics) = self.model.dynamics.as_ref().filter(|dynamics| !dynamics.sticking.is_empty())
+        else {
+            return;
+        };
+        let holding = |id: Id, of: &dyn Fn(&str) -> bool| {
+            let other = |node| match node {
+                Node::Holding(index) => {
+                    dynamics.sticking.get(index).is_some_and(|friction| of(&friction.name))
+                }
+                _ => false,
+            };
+            self.contains(id, other)
+        };
+        let mut faults = Vec::new();
+        for force in &dynamics.forces {
+            let parts: Vec<Option<Id>> = match &force.action {
+                Action::Work(pairs) => pairs.iter().map(|(force, _)| Some(*force)).collect(),
+                Action::Dissipation(power) => vec![Some(*power)],
+                Action::Line(line) => vec![line.stiffness, line.length, line.damping, line.actuator],
+                Action::Turn(turn) => vec![turn.stiffness, turn.rest, turn.damping, turn.torque],
+            };
+            if parts.into_iter().flatten().any(|part| holding(part, &|name| name != force.name)) {
+                faults.push((
+                    force.span,
+                    format!("`{}` needs the force of a friction that sticks", force.name),
+                ));
+            }
+        }
+        for state in &dynamics.states {
+            if state.rate.is_some_and(|rate| holding(rate, &|_| true)) {
+                let message =
+                    format!("the rate of `{}` needs the force of a friction that sticks", state.name);
+                faults.push((state.span, message));
+            }
+        }
+        for (span, message) in faults {
+            let help = "outputs know the force that holds, forces and rates the `power` alone; or write `speed` in place of `sticks`";
+            self.diagnostics.report(span, message, help);
+        }
     }
 }
 
@@ -58,7 +102,7 @@ fn with_drag(
     work.push_binary(Binary::Add, force, drag, name.span)
 }
 
-/// The largest force μₛ |N| of a friction with stiction, and its force h − σ μ |N| − c ṡ.
+/// The largest force μₛ |N| of a friction with stiction, its force h − σ μ |N| − c ṡ, and the same without h.
 ///
 /// σ is the direction of sliding, h the force while it sticks. μ is the coefficient, or falls from μₛ to it as
 /// exp(−(ṡ/v)²) where a speed is given. A μₛ below the coefficient counts as the coefficient.
@@ -69,7 +113,7 @@ fn set_valued(
     [along, normal, coefficient, most]: [Id; 4],
     given: &Given,
     name: &Name,
-) -> Result<[Id; 2], Fault> {
+) -> Result<[Id; 3], Fault> {
     let span = name.span;
     let rate = work.expressions.push(Node::Rate(along, 1));
     let pressure = work.push_unary(Unary::Abs, normal, span)?;
@@ -89,7 +133,8 @@ fn set_valued(
     let direction = work.expressions.push(Node::Sliding(index));
     let force = work.push_binary(Binary::Multiply, resistance, direction, span)?;
     let force = with_drag(work, force, rate, given, name)?;
+    let sliding = work.push_unary(Unary::Negate, force, span)?;
     let holding = work.expressions.push(Node::Holding(index));
     let force = work.push_binary(Binary::Subtract, holding, force, span)?;
-    Ok([limit, force])
+    Ok([limit, force, sliding])
 }

@@ -243,8 +243,18 @@ impl Resolver<'_> {
         let spared = |name: &str| name == "speed" && is_given("sticks");
         let is_missing = |name: &str| !is_given(name) && !misspelled.contains(&name) && !spared(name);
         for (missing, ..) in known.iter().filter(|(known, _, needed)| *needed && is_missing(known)) {
-            let message = format!("`{}` has no field `{missing}`", name.text);
-            let _reported = self.fault(name.span, message, format!("write `{missing}: …` in its braces"));
+            let (message, help) = match (kind_of, *missing) {
+                (Element::Friction, "speed") => (
+                    format!("`{}` has neither `speed` nor `sticks`", name.text),
+                    "write `speed: …` for a law that is smooth below it, or `sticks: …` for one that sticks"
+                        .into(),
+                ),
+                _ => (
+                    format!("`{}` has no field `{missing}`", name.text),
+                    format!("write `{missing}: …` in its braces"),
+                ),
+            };
+            let _reported = self.fault(name.span, message, help);
             faulty = true;
         }
         if faulty { Err(Fault) } else { Ok(given) }

@@ -60,6 +60,7 @@ pub fn resolve(
         work.run(arranged.as_deref().unwrap_or(statements));
         work.check_states();
         work.check_pins();
+        work.check_holding();
     }
     work.check_normalisations();
     work.check_guesses();

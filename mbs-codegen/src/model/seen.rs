@@ -228,7 +228,7 @@ impl Elaborator<'_> {
                 let torque = self.spring_force(turn.angle, parts, span)?;
                 vec![(self.push_unary(Unary::Negate, torque, span)?, turn.angle)]
             }
-            Force::Friction { along: place, force } | Force::Contact { gap: place, force } => {
+            Force::Friction { along: place, sliding: force, .. } | Force::Contact { gap: place, force } => {
                 vec![(*force, *place)]
             }
             Force::Load { pairs, .. } => pairs.clone(),

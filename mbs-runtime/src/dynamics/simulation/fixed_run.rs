@@ -238,11 +238,12 @@ where
             let evaluated = (start, S::evaluated(parameters));
             kink = model.contact_change(evaluated, (start, end), |t| ahead.at(t), &self.scrutiny)?;
         }
-        if const { !S::FRICTIONS.is_empty() } {
+        let least = motion::LEAST_STEP.of::<R>() * start.abs().max(end.abs());
+        // A step into a contact says nothing of speeds: its curve has the end's acceleration. The one up to the contact does.
+        if const { !S::FRICTIONS.is_empty() } && kink.is_none_or(|kink| !least.less(end - kink)) {
             let model = Model { parameters, ..model };
             kink = self.slip(&model, ahead, kink.unwrap_or(end))?.or(kink);
         }
-        let least = motion::LEAST_STEP.of::<R>() * start.abs().max(end.abs());
         Ok(kink.map(|kink| kink.max(start + least)).filter(|kink| least < end - *kink))
     }
 
