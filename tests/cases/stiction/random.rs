@@ -138,8 +138,10 @@ fn methods_agree() {
 /// A motion whose frictions share a force in a ratio that counts is refused, and never one of several.
 #[test]
 fn redundant_frictions_agree_or_are_refused() {
+    // Many are refused.
+    let seeds = SEEDS.max(6);
     let mut right = 0;
-    for seed in 0..SEEDS {
+    for seed in 0..seeds {
         match both(seeded!(Redundant, seed)) {
             Ok([adaptive, fixed]) => {
                 right += 1;
@@ -154,5 +156,5 @@ fn redundant_frictions_agree_or_are_refused() {
             Err(failure) => panic!("seed {seed}: {failure}"),
         }
     }
-    assert!(right > 0, "all of {SEEDS} are refused");
+    assert!(right > 0, "all of {seeds} are refused");
 }
