@@ -76,7 +76,7 @@ pub fn one_of_two(word: &str) -> Option<&'static str> {
 }
 
 /// Names of fields elsewhere, and the field that they mean.
-const FIELDS: [(&str, &str); 46] = [
+const FIELDS: [(&str, &str); 43] = [
     ("m", "mass"),
     ("J", "inertia"),
     ("I", "inertia"),
@@ -109,9 +109,6 @@ const FIELDS: [(&str, &str); 46] = [
     ("angle0", "rest"),
     ("phi0", "rest"),
     ("rest_angle", "rest"),
-    ("a", "from"),
-    ("between", "from"),
-    ("b_point", "to"),
     ("mu", "coefficient"),
     ("friction", "coefficient"),
     ("normal_force", "normal"),
