@@ -3,6 +3,7 @@
 
 mod belt;
 mod blocks;
+mod contacts;
 mod pendulum;
 mod random;
 mod refusals;
