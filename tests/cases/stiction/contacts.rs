@@ -35,7 +35,7 @@ fn on_a_contact_it_slides_sticks_and_goes_on() {
 /// Steps of fixed size into a contact: a friction at rest there was taken for one that slips at once, until the step was refused.
 #[test]
 fn equal_steps_bounce_as_adaptive_ones() {
-    let block = Block { pull: 0.0, v0: 1.0, height: 0.1, ..Block::default() };
+    let block = Block { pull: 0.0, v0: 1.0, height: 0.1 };
     let method = Explicit::new(DormandPrince8, Projection::default());
     let run = Simulation::start_from_text(block, method, 0.0_f64).expect("it starts");
     let mut run = run.with_tolerance(Tolerance::new(1e-10));
