@@ -73,7 +73,7 @@ pub fn full() -> Result<(), String> {
     costs::peers()?;
     costs::index()?;
     hard_cases(&["--variants", "8"])?;
-    planted::run_all()?;
+    planted::run(&[])?;
     fuzz::run(60, false)?;
     oldest()
 }

@@ -8,6 +8,7 @@ mod fuzz;
 mod growth;
 mod instructions;
 mod lines;
+mod mutants;
 mod planted;
 mod shell;
 mod words;
@@ -28,7 +29,9 @@ docs                     documentation of all crates without warnings, doc tests
 browser                  reports of all mechanisms in headless Chromium
 costs                    `mbs cost` of all mechanisms, and of the pendulum with other programs
 fuzz [SECONDS] [--keep]  texts and calls by chance, a minute for each of three targets or as long as asked; `--keep` stores new inputs
-planted                  planted faults: each must turn a cell of the matrix of hard cases to wrong
+planted [FAULT…]         planted faults: each must turn a cell of the matrix of hard cases to wrong
+mutants [MINUTES]        judges changes of the sources that `xtask/mutants/sample.txt` lists, by tests that must fail, for an hour or as long as
+                         asked; `mutants --sample SEED` draws a new list
 package                  packages of all crates, each compiled as a registry would have it
 words [--count]          reader's aid: doc comments that begin with a question word, sentences of more than 25 words";
 
@@ -60,7 +63,16 @@ fn main() -> ExitCode {
             let number = seconds.parse().map_err(|_| format!("`{seconds}` is no number of seconds"));
             number.and_then(|seconds| fuzz::run(seconds, !rest.is_empty()))
         }
-        ("planted", []) => planted::run_all(),
+        ("planted", names) => planted::run(names),
+        ("mutants", []) => mutants::judged(60),
+        ("mutants", ["--sample", seed]) => seed
+            .parse()
+            .map_err(|_| format!("`{seed}` is no seed: a whole number"))
+            .and_then(mutants::sampled),
+        ("mutants", [minutes]) => minutes
+            .parse()
+            .map_err(|_| format!("`{minutes}` is no number of minutes"))
+            .and_then(mutants::judged),
         ("package", []) => documents::package(),
         ("words", []) => words::run(false),
         ("words", ["--count"]) => words::run(true),

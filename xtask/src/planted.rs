@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::shell::{command, need, output, root, run, target};
+use crate::shell::{self, command, need, output, root, target};
 
 /// Folder of the patches.
 const FOLDER: &str = "xtask/planted";
@@ -14,39 +14,55 @@ const LIST: &str = "mbs-workbench/hard_cases";
 /// Head of the line of a patch that names its cases.
 const CASES: &str = "Cases: ";
 
+/// Head of the line of a patch that names its methods: all where there is none.
+const METHODS: &str = "Methods: ";
+
 /// A fault.
 struct Fault {
     path: PathBuf,
     /// First line of its patch.
     title: String,
-    /// Cases that show it.
-    cases: String,
+    shown: Shown,
 }
 
-/// Plants all faults one after the other.
+/// Part of the matrix that shows a fault.
+struct Shown {
+    /// Names with commas between them.
+    cases: String,
+    /// Methods that the fault touches: others run as they do without it, and adaptive ones may take hours.
+    methods: Option<String>,
+}
+
+/// Plants all faults, or those of these `names`, one after the other.
 ///
 /// # Errors
-/// A patch that no longer applies, a build that fails, or a fault that no cell shows.
-pub fn run_all() -> Result<(), String> {
+/// A name without a patch, a patch that no longer applies, a build that fails, or a fault that no cell shows.
+pub fn run(names: &[&str]) -> Result<(), String> {
     need("git", "install git")?;
-    let faults = faults()?;
+    let mut faults = faults()?;
+    if let Some(unknown) = names.iter().find(|name| !faults.iter().any(|fault| fault.name() == **name)) {
+        let known: Vec<String> = faults.iter().map(Fault::name).collect();
+        return Err(format!("there is no fault `{unknown}` in {FOLDER}\nknown: {}", known.join(", ")));
+    }
+    faults.retain(|fault| names.is_empty() || names.contains(&fault.name().as_str()));
     let folder = target().join("planted");
     let copy = folder.join("sources");
     copied(&copy)?;
-    let mut cases: Vec<&str> = faults.iter().flat_map(|fault| fault.cases.split(',')).collect();
+    let mut cases: Vec<&str> = faults.iter().flat_map(|fault| fault.shown.cases.split(',')).collect();
     cases.sort_unstable();
     cases.dedup();
     println!("\n== sources as they are: {}", cases.join(", "));
-    let wrong = wrong(&copy, &cases.join(","), &folder.join("as_they_are"))?;
+    let all = Shown { cases: cases.join(","), methods: None };
+    let wrong = wrong(&copy, &all, &folder.join("as_they_are"))?;
     if wrong > 0 {
         return Err(format!("{wrong} runs are wrong without a fault"));
     }
     let mut missed = Vec::new();
     for fault in &faults {
-        let name = fault.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = fault.name();
         println!("\n== {name}: {}", fault.title);
         applied(&copy, fault, &[])?;
-        let found = self::wrong(&copy, &fault.cases, &folder.join(&name));
+        let found = self::wrong(&copy, &fault.shown, &folder.join(&name));
         // The next fault is planted alone.
         applied(&copy, fault, &["--reverse"])?;
         let found = found?;
@@ -64,6 +80,13 @@ pub fn run_all() -> Result<(), String> {
     }
 }
 
+impl Fault {
+    /// File name of its patch without the suffix.
+    fn name(&self) -> String {
+        self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}
+
 fn faults() -> Result<Vec<Fault>, String> {
     let folder = root().join(FOLDER);
     let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
@@ -78,11 +101,14 @@ fn fault(path: PathBuf) -> Result<Fault, String> {
     let title = text.lines().next().unwrap_or_default().to_string();
     let cases = text.lines().find_map(|line| line.strip_prefix(CASES));
     let cases = cases.ok_or_else(|| format!("{}: no line `{CASES}name,name`", path.display()))?;
-    Ok(Fault { title, cases: cases.trim().to_string(), path })
+    let methods = text.lines().find_map(|line| line.strip_prefix(METHODS));
+    let shown =
+        Shown { cases: cases.trim().to_string(), methods: methods.map(|methods| methods.trim().to_string()) };
+    Ok(Fault { title, shown, path })
 }
 
 /// Copies what git knows, and leaves alone what has not changed.
-fn copied(copy: &Path) -> Result<(), String> {
+pub fn copied(copy: &Path) -> Result<(), String> {
     let names = output(&mut command("git", &["ls-files", "--cached", "--others", "--exclude-standard"]))?;
     for name in names.lines() {
         let (from, to) = (root().join(name), copy.join(name));
@@ -106,9 +132,9 @@ fn applied(copy: &Path, fault: &Fault, options: &[&str]) -> Result<(), String> {
         .arg(&patch)
         .current_dir(copy)
         .env("GIT_CEILING_DIRECTORIES", copy.parent().unwrap_or(copy));
-    run(&mut apply).map_err(|reason| {
+    shell::run(&mut apply).map_err(|reason| {
         format!(
-            "{reason}\nthe patch no longer applies: plant the fault by hand in {}, and store `diff -u` of it with the first two lines \
+            "{reason}\nthe patch no longer applies: plant the fault by hand in {}, and store `diff -u` of it with the lines before `---` \
              of {patch}",
             copy.display()
         )
@@ -134,16 +160,19 @@ fn chosen(copy: &Path, cases: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Number of wrong runs of some cases.
-fn wrong(copy: &Path, cases: &str, out: &Path) -> Result<usize, String> {
-    chosen(copy, cases)?;
+/// Number of wrong runs of a part of the matrix.
+fn wrong(copy: &Path, shown: &Shown, out: &Path) -> Result<usize, String> {
+    chosen(copy, &shown.cases)?;
     let table = out.join("hard-cases.csv");
     // A table of an earlier run tells nothing.
     drop(fs::remove_file(&table));
     let out = out.display().to_string();
     let mut study =
         command("cargo", &["run", "--quiet", "--release", "-p", "mbs-workbench", "--bin", "mbs", "--"]);
-    study.args(["hard-cases", "--quick", "--variants", "8", "--cases", cases, "--out", &out]);
+    study.args(["hard-cases", "--quick", "--variants", "8", "--cases", &shown.cases, "--out", &out]);
+    if let Some(methods) = &shown.methods {
+        study.args(["--methods", methods]);
+    }
     study.current_dir(copy).env("CARGO_TARGET_DIR", target().join("planted").join("target"));
     let status = study.stdout(std::process::Stdio::null()).status().map_err(|error| error.to_string())?;
     let table = fs::read_to_string(&table)
