@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use std::thread;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::card::Card;
 use crate::catalogue::Catalogue;
@@ -180,7 +180,8 @@ pub fn program(cards: &[Card]) -> ExitCode {
     let Arguments { command, json } = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            let hint = mechanism_as_command(&catalogue, &error);
+            let typed = typed_command();
+            let hint = mechanism_as_command(&catalogue, &error).or_else(|| option_elsewhere(&error, &typed));
             put_usage(&error, hint.as_deref());
             match hint {
                 Some(hint) => return report(&CommandError::Usage(hint)),
@@ -294,6 +295,15 @@ fn mechanism_as_command(catalogue: &Catalogue, error: &clap::Error) -> Option<St
     };
     // A command that is nearly written so is meant before a mechanism.
     let has_proposal = error.get(ContextKind::SuggestedSubcommand).is_some();
+    // Of a word of a few letters the parser knows no command that is near.
+    let commands = Arguments::command();
+    let is_near = |command: &&str| strsim::damerau_levenshtein(word, command) == 1;
+    let near_command = commands.get_subcommands().map(clap::Command::get_name).find(is_near);
+    if let Some(command) = near_command.filter(|_| !has_proposal) {
+        return Some(format!(
+            "`{word}` is no command; did you mean `{command}`?\n`mbs --help` lists the commands"
+        ));
+    }
     let names: Vec<String> = catalogue.names().collect();
     let same = names.iter().find(|name| name.eq_ignore_ascii_case(word));
     let near = || nearest(word, names.iter().map(String::as_str)).map(str::to_owned);
@@ -305,6 +315,40 @@ fn mechanism_as_command(catalogue: &Catalogue, error: &clap::Error) -> Option<St
     };
     Some(format!(
         "`{word}` is no command; a mechanism runs by `mbs run {name}`\n`mbs --help` lists the commands"
+    ))
+}
+
+/// The command that the command line begins with; `run` where it names none.
+fn typed_command() -> String {
+    let words = std::env::args_os().skip(1).filter_map(|word| word.into_string().ok());
+    words.into_iter().find(|word| !word.starts_with('-')).unwrap_or_else(|| "run".into())
+}
+
+/// Commands that have an option which the one that was typed lacks.
+fn option_elsewhere(error: &clap::Error, typed: &str) -> Option<String> {
+    let is_unknown = error.kind() == ErrorKind::UnknownArgument;
+    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg).filter(|_| is_unknown) else {
+        return None;
+    };
+    let long = option.strip_prefix("--")?;
+    // An option that is nearly written so is meant before another command.
+    if error.get(ContextKind::SuggestedArg).is_some() {
+        return None;
+    }
+    let commands = Arguments::command();
+    let has = |command: &&clap::Command| command.get_arguments().any(|known| known.get_long() == Some(long));
+    let with: Vec<String> = commands
+        .get_subcommands()
+        .filter(has)
+        .map(|command| format!("`mbs {}`", command.get_name()))
+        .collect();
+    let reason = match with.is_empty() {
+        true => String::from("no command has it"),
+        false => format!("it is an option of {}", with.join(", ")),
+    };
+    Some(format!(
+        "unexpected argument '{option}': `mbs {typed}` has no such option, {reason}\n\
+         `mbs {typed} --help` lists those that it has"
     ))
 }
 

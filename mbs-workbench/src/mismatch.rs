@@ -167,6 +167,12 @@ impl fmt::Display for Mismatch {
         match self {
             Mismatch::Mechanism { name, known } => {
                 write!(f, "there is no mechanism `{name}`")?;
+                if known.is_empty() {
+                    return write!(
+                        f,
+                        "; this program has none of its own\na file is named with its suffix, `mbs run {name}.mbs`; `mbs new {name}` writes a crate with one"
+                    );
+                }
                 write_known(f, name, known)
             }
             Mismatch::Scenes { name, scenes } => write!(

@@ -293,6 +293,9 @@ fn a_command_line_without_sense_has_a_document_too() {
         (&["run", "wiper", "--stepz", "9"][..], "--stepz"),
         (&["basins", "wiper", "--out", "picture"], "FILE.svg"),
         (&["Wiper"], "mbs run wiper"),
+        (&["rn", "wiper"], "did you mean `run`?"),
+        (&["run", "wiper", "--guess", "rod=20deg"], "it is an option of `mbs equilibrium`, "),
+        (&["run", "wiper", "--analysis", "inverse"], "`mbs run` has no such option, no command has it"),
     ] {
         let output = wiper(&[arguments, &["--json"]].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -305,6 +308,11 @@ fn a_command_line_without_sense_has_a_document_too() {
         assert!(message.contains(part) && !message.starts_with("error"), "{message}");
         assert!(String::from_utf8_lossy(&output.stderr).contains(part));
     }
+    let folder = scratch("near");
+    fs::create_dir_all(&folder).expect("a folder");
+    fs::write(folder.join("pump.mbs"), "mechanism Pump;\n").expect("a file");
+    let said = failure(&["check", folder.join("pmp.mbs").to_str().expect("a path")], 2);
+    assert!(said.contains("near/pump.mbs`?"), "{said}");
     // Help is no error.
     let help = wiper(&["run", "--help", "--json"]);
     assert!(help.status.success() && !help.stdout.starts_with(b"{"));

@@ -139,7 +139,9 @@ impl Resolver<'_> {
         let given =
             self.fields(kind, name, fields).inspect_err(|_| self.names.mark_faulty_element(&name.text))?;
         match kind {
-            Element::Body => self.body(name, full, &given),
+            Element::Body => {
+                self.body(name, full, &given).inspect_err(|_| self.names.mark_faulty_element(&name.text))
+            }
             Element::Gravity => self.gravity(name, &given),
             Element::Tsda => self.line(name, full, &given, fields),
             Element::Friction => self.friction(name, full, &given),
@@ -365,17 +367,27 @@ impl Resolver<'_> {
         })?;
         self.stateless(&on)?;
         let (given, value) = self.elaborate(Reach::Force, |work| {
-            let written = value;
+            let written_value = value;
             let value = work.value(value)?;
             let place = Place::Field(name.text.clone());
             let given =
-                work.concerning(place, (written, None), |work| initialiser(work, value, dimension))?;
+                work.concerning(place, (written_value, None), |work| initialiser(work, value, dimension))?;
             let mut value = given.clone();
             if kind == Load::Torque && on.shape == [4] {
                 vector_of_three(work, &value)?;
                 let parameters = parameters(work, &on, "a torque")?;
                 value.items = moments(work, &value, parameters, value.span)?.to_vec();
             } else {
+                if kind == Load::Force && value.shape.is_empty() && !on.shape.is_empty() {
+                    let message =
+                        format!("the force `{}` has one component, its point {}", name.text, on.items.len());
+                    let force = written(&written_value.code);
+                    let zeros = ", 0".repeat(on.items.len().saturating_sub(1));
+                    let help = format!(
+                        "write its components, `[{force}{zeros}] on …`, or the length that it acts along"
+                    );
+                    return Err(work.fault(value.span, message, help));
+                }
                 work.same_shape(&on, &value, "`on`", value.span)?;
             }
             Ok::<_, Fault>((given, value))

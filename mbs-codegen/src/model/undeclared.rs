@@ -10,12 +10,12 @@ use super::uses::{OF_ANGLES, Undeclared};
 use super::written::{operands, start, written};
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast::{
-    Expression, Instruction, Name, Operation, Signature, Statement, StatementKind, Type,
+    Element, Expression, Instruction, Name, Operation, Signature, Statement, StatementKind, Type,
 };
 use crate::syntax::unit_symbols::DOTS;
 
 /// Values of the language by other names.
-const OTHER_NAMES: [(&str, &str); 13] = [
+const OTHER_NAMES: [(&str, &str); 14] = [
     ("time", "t"),
     ("Time", "t"),
     ("TIME", "t"),
@@ -29,6 +29,7 @@ const OTHER_NAMES: [(&str, &str); 13] = [
     ("Tau", "TAU"),
     ("g", "1g0"),
     ("gravity", "1g0"),
+    ("e", "exp(1)"),
 ];
 
 /// The value of the language that another name means, with the reason.
@@ -37,6 +38,7 @@ pub fn meant_value(name: &str) -> Option<String> {
     Some(match *meant {
         "t" => "the time is `t`".into(),
         "1g0" => "declare it, or write standard gravity as `1g0`".into(),
+        "exp(1)" => "declare it, or write Euler's number as `exp(1)`".into(),
         constant => format!("write `{constant}`"),
     })
 }
@@ -100,6 +102,12 @@ pub fn explain(statements: &[Statement], names: &mut Names, diagnostics: &mut Di
             }
             continue;
         }
+        if let Some(help) = declared_otherwise(statements, name) {
+            if diagnostics.withdraw(*span, message) {
+                diagnostics.report(*span, message.clone(), help);
+            }
+            continue;
+        }
         let times = names.uses.get(name).map_or(1, |(count, _)| *count);
         let sibling = statements.iter().find_map(|statement| match &statement.kind {
             StatementKind::Coord { name: other, kind, .. } if is_sibling(name, &other.text) => {
@@ -143,6 +151,29 @@ pub fn explain(statements: &[Statement], names: &mut Names, diagnostics: &mut Di
             diagnostics.report(*span, message.clone(), help);
         }
     }
+}
+
+/// Cure at a name that has a declaration without a value: an output, a body or another element.
+fn declared_otherwise(statements: &[Statement], name: &str) -> Option<String> {
+    statements.iter().find_map(|statement| match &statement.kind {
+        StatementKind::Out { name: output, value, .. } if output.text == name => {
+            let value = written(&value.code);
+            Some(format!("`{name}` is an output, which is read outside alone: declare `let {name} = {value};` too, for the text"))
+        }
+        StatementKind::Element { kind: Element::Body, name: body, fields } if body.text == name => {
+            let field = |wanted: &str| {
+                fields.iter().find(|field| field.name.text == wanted).map(|field| written(&field.value.code))
+            };
+            let place = field("com").unwrap_or_else(|| "P".into());
+            Some(match field("angle") {
+                Some(angle) => format!(
+                    "`{name}` is a body: write its angle `{angle}` for a torque, or a point on it, `{place} of {name}`, for a force"
+                ),
+                None => format!("`{name}` is a body: write a point on it, `{place} of {name}`"),
+            })
+        }
+        _ => None,
+    })
 }
 
 /// Cure at a function that is declared nowhere.
@@ -321,10 +352,6 @@ pub fn meant_function(name: &str, arguments: &[String]) -> Option<String> {
         ("signum", "sign"),
         ("length", "norm"),
         ("magnitude", "norm"),
-        ("diff", "der"),
-        ("deriv", "der"),
-        ("ddt", "der"),
-        ("derivative", "der"),
         ("sqroot", "sqrt"),
     ];
     let call = |function: &str| format!("write `{function}({})`", arguments.join(", "));
@@ -332,6 +359,18 @@ pub fn meant_function(name: &str, arguments: &[String]) -> Option<String> {
         "sqr" | "square" | "sq" => format!("write a square as a power: `{}`", power(first, "2")),
         "cube" => format!("write it as a power: `{}`", power(first, "3")),
         "pow" | "power" | "powf" | "powi" => format!("write a power with `^`: `{}`", power(first, second)),
+        "diff" | "deriv" | "ddt" | "derivative" | "velocity" | "vel" | "speed" => {
+            format!("a rate is written `der({first})`")
+        }
+        "ddot" | "d2dt2" | "acceleration" | "accel" | "acc" => {
+            format!("an acceleration is written `der2({first})`")
+        }
+        "floor" | "ceil" | "round" | "trunc" | "mod" | "fmod" | "rem" => {
+            "a text has smooth functions alone: an angle over many turns is declared `coord phi: turn`".into()
+        }
+        "degrees" | "rad2deg" | "deg" => {
+            format!("leave it out: `{first}` is in rad, and `mbs` shows angles in degrees")
+        }
         "circle" => {
             format!("a curve is that of the centre of a circle that rolls on it: write the centre, `{first}`")
         }

@@ -62,7 +62,7 @@ impl Elaborator<'_> {
         self.fault(
             span,
             format!("`{name}` cannot be used here"),
-            "constants and defaults use constants alone, guesses use constants and parameters",
+            "constants and defaults use constants alone, guesses constants and parameters; what depends on more is a `let`",
         )
     }
 

@@ -7,9 +7,13 @@ use super::springs::{SpringDamper, Turn};
 use crate::diagnostics::Diagnostics;
 
 /// Before: a resolved model. After: forces without effect are reported.
-pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
+///
+/// `is_whole`: `false` if a body or element had a fault, so that it is missing among those of the model.
+pub fn check(model: &Model, is_whole: bool, diagnostics: &mut Diagnostics) {
     let Some(dynamics) = &model.dynamics else { return };
-    gravity(dynamics, diagnostics);
+    if is_whole {
+        gravity(dynamics, diagnostics);
+    }
     let moving = model.expressions.made_of(|node| matches!(node, Node::Coordinate(_)));
     let moves = |place: Id| moving.get(place.index()) == Some(&true);
     for force in &dynamics.forces {

@@ -5,6 +5,7 @@ use super::curve;
 use super::expression::expression;
 use super::for_loop::read_loop;
 use super::foreign;
+use super::other_forms;
 use super::parser::{GivenUp, Parser, Read};
 use super::statement_end::{at_statement, end};
 use super::tokens::{Token, TokenKind};
@@ -20,6 +21,9 @@ fn read_rows(parser: &mut Parser<'_>, name: Name) -> Read<StatementKind> {
     let redundant = parser.at_word("redundant").then(|| parser.span());
     parser.skip(usize::from(redundant.is_some()));
     let within = width(parser, redundant.is_some())?;
+    if matches!(parser.peek(), TokenKind::Punctuation(':', false)) {
+        return other_forms::rows_without_braces(parser, &name.text);
+    }
     parser.expect('{', CONSTRAINT)?;
     let mut items = Vec::new();
     let mut loops = 0_usize;
@@ -138,12 +142,16 @@ fn behind_equation(parser: &mut Parser<'_>) -> bool {
 
 /// `left == right;` or `point on curve;`
 fn row(parser: &mut Parser<'_>) -> Read<Item> {
+    let begin = parser.rest();
     let left = expression(parser)?;
     let span = parser.span();
     if parser.take_word("on") {
         let curve = parser.name(curve::ON)?;
         end(parser, curve::ON)?;
         return Ok(Item::On { point: left, curve, span });
+    }
+    if matches!(parser.peek(), TokenKind::Punctuation(';', _)) {
+        return other_forms::one_side(parser, begin);
     }
     behind_left(parser, left, CONSTRAINT).map(Item::Equation)
 }
@@ -165,7 +173,12 @@ fn behind_left(parser: &mut Parser<'_>, left: Expression, help: &str) -> Read<Eq
         return parser.expected("`==`", if single { "the sign of an equation is `==`" } else { help });
     }
     parser.skip(2);
+    let middle = parser.rest();
     let right = expression(parser)?;
+    if parser.at_pair('=', '=') {
+        let middle = middle.get(..middle.len().saturating_sub(parser.rest().len())).unwrap_or_default();
+        return other_forms::second_equals(parser, middle);
+    }
     end(parser, help)?;
     Ok(Equation { left, right, span })
 }

@@ -3,7 +3,9 @@
 use super::ast::{Bounds, Declares, Signature, StatementKind};
 use super::expression::expression;
 use super::foreign;
+use super::other_forms;
 use super::parser::{GivenUp, Parser, Read};
+use super::quotation::quoted;
 use super::statement_end::end;
 use super::tokens::TokenKind;
 use super::unit::{declared_type, unit};
@@ -42,6 +44,9 @@ const RANGE: &str =
 fn bounds(parser: &mut Parser<'_>) -> Read<Bounds> {
     let mut bounds = Bounds::default();
     if parser.take_word("in") {
+        if let Some(reported) = other_forms::range_of_two(parser) {
+            return reported;
+        }
         let low = expression(parser)?;
         if !parser.at_pair('.', '.') {
             return parser.expected("`..`", RANGE);
@@ -51,8 +56,7 @@ fn bounds(parser: &mut Parser<'_>) -> Read<Bounds> {
         parser.take('=');
         bounds.range = Some((low, expression(parser)?));
     }
-    let is_tolerance = matches!(parser.peek_at(1), TokenKind::Identifier(word) if word == "tolerance");
-    if is_tolerance && parser.take(',') && parser.take_word("tolerance") {
+    if other_forms::takes_tolerance(parser) {
         bounds.tolerance = Some(expression(parser)?);
     }
     Ok(bounds)
@@ -61,9 +65,13 @@ fn bounds(parser: &mut Parser<'_>) -> Read<Bounds> {
 const COORD: &str = "write `coord phi: rad = 0.5;` or `coord p: [m; 2] = [0.1, 0.2];`";
 pub fn read_coord(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let (name, (kind, guess)) = parser.declare(Declares::Coord, COORD, |parser, kind| {
+        let name = quoted(parser.before().last().map_or(&[], std::slice::from_ref));
         parser.expect(':', COORD)?;
         let declared = kind.insert(declared_type(parser, COORD)?).clone();
         let guess = if foreign::takes_value(parser) { Some(expression(parser)?) } else { None };
+        if parser.at_word("rate") {
+            return other_forms::rate_of_a_guess(parser, &name);
+        }
         end(parser, COORD)?;
         Ok((declared, guess))
     })?;
@@ -73,8 +81,14 @@ pub fn read_coord(parser: &mut Parser<'_>) -> Read<StatementKind> {
 const INPUT: &str = "write `input torque: N*m;` or `input theta: rad, rates;`";
 pub fn read_input(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let (name, (kind, rates)) = parser.declare(Declares::Input { rates: false }, INPUT, |parser, kind| {
+        let name = quoted(parser.before().last().map_or(&[], std::slice::from_ref));
         parser.expect(':', INPUT)?;
+        let begin = parser.rest();
         let declared = kind.insert(declared_type(parser, INPUT)?).clone();
+        if matches!(parser.peek(), TokenKind::Punctuation('=', _)) {
+            let unit = begin.get(..begin.len().saturating_sub(parser.rest().len())).unwrap_or_default();
+            return other_forms::value_of_an_input(parser, &name, &quoted(unit));
+        }
         let is_semicolon = matches!(parser.peek(), TokenKind::Punctuation(';', _))
             && matches!(parser.peek_at(1), TokenKind::Identifier(word) if word == "rates");
         if is_semicolon {

@@ -8,6 +8,7 @@ use super::foreign::{self, CALLED};
 use super::number::literal;
 use super::number_notations;
 use super::parser::{GivenUp, Parser, Read};
+use super::quotation::{operand_at_end, quoted};
 use super::tokens::TokenKind;
 
 const DERIVATIVE: &str = "write `lift.d1(x)` or `lift.d2(x)` of a declared function; what rates need beyond is derived from the text";
@@ -49,6 +50,17 @@ impl Reader {
             }
             parser.skip(1);
             return Ok(Some(false));
+        }
+        let letter = match parser.peek() {
+            TokenKind::Identifier(word) => ["x", "y", "z"].iter().position(|letter| letter == word),
+            _ => None,
+        };
+        if let Some(index) = letter {
+            let owner = quoted(operand_at_end(parser.before().split_last().map_or(&[], |(_, owner)| owner)));
+            return parser.expected(
+                "the number of a component",
+                &format!("components are counted from 0: write `{owner}.{index}`"),
+            );
         }
         parser.expected("the number of a component", "write `p.0` or `p[0]`; of a matrix `m[0, 1]`")
     }

@@ -7,8 +7,11 @@ use super::constraint::equation;
 use super::expression::expression;
 use super::foreign;
 use super::foreign_words;
+use super::other_forms;
 use super::parser::{Parser, Read};
+use super::quotation::quoted;
 use super::statement_end::end;
+use super::tokens::TokenKind;
 use super::unit::declared_type;
 
 const BODY: &str = "write `body rod { mass: 2kg, com: [x, y], inertia: 0.1, angle: phi }`";
@@ -52,6 +55,10 @@ fn element(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<Statement
 /// `{ field: value, … }`
 fn read_fields(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<Vec<Field>> {
     if !parser.take('{') {
+        let name = quoted(parser.before().get(parser.before().len().saturating_sub(2)..).unwrap_or_default());
+        if let Some(reported) = other_forms::fields_in_parentheses(parser, &name) {
+            return reported;
+        }
         return foreign_words::before_fields(parser, kind, help);
     }
     let mut fields = Vec::new();
@@ -157,9 +164,13 @@ fn energy(parser: &mut Parser<'_>, kind: Energy, help: &str) -> Read<StatementKi
 const STATE: &str = "write `state z: N = 0;` and its rate `der(z) == …;`";
 pub fn read_state(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let (name, (kind, value)) = parser.declare(Declares::Value, STATE, |parser, _| {
+        let name = quoted(parser.before().last().map_or(&[], std::slice::from_ref));
         parser.expect(':', STATE)?;
         let kind = declared_type(parser, STATE)?;
         let value = if foreign::takes_value(parser) { Some(expression(parser)?) } else { None };
+        if parser.at_word("rate") {
+            return other_forms::rate_of_a_state(parser, &name);
+        }
         end(parser, STATE)?;
         Ok((kind, value))
     })?;
@@ -190,8 +201,15 @@ pub fn read_rate(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 const START: &str = "write `start phi1 = 0.3 rate 2.0;`";
 pub fn read_start(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let span = parser.span();
+    let (span, begin) = (parser.span(), parser.rest());
+    if let Some(reported) = other_forms::start_of_a_rate(parser) {
+        return reported;
+    }
     let coordinate = expression(parser)?;
+    if matches!(parser.peek(), TokenKind::Punctuation(':', false)) {
+        let coordinate = begin.get(..begin.len().saturating_sub(parser.rest().len())).unwrap_or_default();
+        return other_forms::start_with_a_colon(parser, coordinate);
+    }
     if !foreign::takes_value(parser) {
         return parser.expected("`=`", START);
     }

@@ -113,6 +113,13 @@ fn header(
     };
     let name: Ident = input.call(Ident::parse_any).map_err(nameless)?;
     let name = identifier(&name.unraw().to_string(), name.span());
+    if input.peek(syn::token::Brace) {
+        let message = format!("its statements stand behind `{}`, not in braces", name.unraw());
+        let fault = syn::Error::new(input.span(), message);
+        let TokenTree::Group(braces) = input.parse()? else { return Err(fault) };
+        input.parse::<TokenStream>()?;
+        return Ok((Header { runtime, attributes, visibility, name }, braces.stream(), Some(fault)));
+    }
     let end: syn::Result<Token![;]> = input.parse();
     let rest: TokenStream = input.parse()?;
     // After the name a statement may follow, its `;` forgotten, or tokens without meaning.

@@ -19,7 +19,8 @@ const BEHIND: [&str; 8] = ["on", "of", "at", "in", "rate", "and", "or", "turned"
 pub fn at_second_operand(parser: &Parser<'_>) -> bool {
     match parser.peek() {
         TokenKind::Identifier(word) => {
-            let may_follow = BEHIND.contains(&word.as_str()) || picture::is_word(word);
+            let is_bound = word == "tolerance" && !parser.declares(word);
+            let may_follow = is_bound || BEHIND.contains(&word.as_str()) || picture::is_word(word);
             !may_follow && !at_statement(parser)
         }
         TokenKind::Literal(_) | TokenKind::Open('(') => true,
@@ -43,7 +44,7 @@ pub fn second_operand<T>(parser: &mut Parser<'_>, around: Around) -> Read<T> {
         [Token { kind: TokenKind::Identifier(name), .. }] => name.as_str(),
         _ => "",
     };
-    let (message, help) = if let Some(number) = number_notations::grouped(first, second) {
+    let (message, help) = if let Some(number) = number_notations::grouped(parser, first, second) {
         ("a space stands in a number".into(), format!("write `{number}`"))
     } else if CALLED.contains(&name) {
         let argument = match second {

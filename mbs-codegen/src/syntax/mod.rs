@@ -20,6 +20,7 @@ mod keywords;
 mod missing;
 mod number;
 mod number_notations;
+mod other_forms;
 mod parser;
 pub mod picture;
 mod quotation;

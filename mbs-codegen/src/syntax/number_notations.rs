@@ -106,14 +106,18 @@ pub fn by_another_name(parser: &Parser<'_>, word: &str) -> Option<String> {
     let symbol = foreign_name(word).filter(|_| word.chars().count() > 1)?;
     // `param r: m = 0.1 in 0.05..0.2;`
     let is_dot = |token: &Token| matches!(token.kind, TokenKind::Punctuation('.', true));
-    if word == "in" && until_end(parser).iter().any(is_dot) {
+    let is_range = matches!(
+        parser.peek_at(1),
+        TokenKind::Literal(_) | TokenKind::Open('[' | '(') | TokenKind::Identifier(_)
+    );
+    if word == "in" && (is_range || until_end(parser).iter().any(is_dot)) {
         return None;
     }
     (!is_declared(parser, word)).then(|| symbol.to_owned())
 }
 
-/// `true` if a statement declares the name.
-fn is_declared(parser: &Parser<'_>, name: &str) -> bool {
+/// `true` if a statement declares the name as a value.
+pub fn is_declared(parser: &Parser<'_>, name: &str) -> bool {
     const DECLARING: [&str; 9] =
         ["const", "param", "input", "coord", "let", "state", "function", "for", "sum"];
     let declares = |tokens: &[Token]| {
@@ -128,15 +132,23 @@ fn is_declared(parser: &Parser<'_>, name: &str) -> bool {
     declares(parser.before()) || declares(parser.rest())
 }
 
+/// The number of `1 e4`, whose exponent stands behind a space; `None` where a name of the text does.
+fn exponent_behind_a_space(parser: &Parser<'_>, digits: &str, second: &[Token]) -> Option<String> {
+    let [Token { kind: TokenKind::Identifier(exponent), .. }] = second else { return None };
+    let power = exponent.strip_prefix(['e', 'E'])?;
+    let is_number = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.')
+        && !power.is_empty()
+        && power.bytes().all(|byte| byte.is_ascii_digit());
+    (is_number && !parser.declares(exponent)).then(|| format!("{digits}{exponent}"))
+}
+
 /// Numbers of three digits behind a space, `1 000m`, as one number; `None` where they are two.
-pub fn grouped(first: &[Token], second: &[Token]) -> Option<String> {
-    let (
-        [Token { kind: TokenKind::Literal(thousands), .. }],
-        [Token { kind: TokenKind::Literal(rest), .. }, ..],
-    ) = (first, second)
-    else {
-        return None;
-    };
+pub fn grouped(parser: &Parser<'_>, first: &[Token], second: &[Token]) -> Option<String> {
+    let [Token { kind: TokenKind::Literal(thousands), .. }] = first else { return None };
+    if let Some(number) = exponent_behind_a_space(parser, thousands, second) {
+        return Some(number);
+    }
+    let [Token { kind: TokenKind::Literal(rest), .. }, ..] = second else { return None };
     let is_group = thousands.len() < 4
         && thousands.bytes().all(|byte| byte.is_ascii_digit())
         && rest.bytes().take_while(u8::is_ascii_digit).count() == 3;

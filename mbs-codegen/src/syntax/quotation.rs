@@ -6,7 +6,11 @@ use super::tokens::{Token, TokenKind};
 
 /// Tokens of the operand that ends just before the cursor: a number, a name with indices, a call, a bracket.
 pub fn operand_before<'a>(parser: &Parser<'a>) -> &'a [Token] {
-    let before = parser.before();
+    operand_at_end(parser.before())
+}
+
+/// Tokens of the operand that ends these.
+pub fn operand_at_end(before: &[Token]) -> &[Token] {
     let mut from = before.len();
     while let Some(last) = from.checked_sub(1).and_then(|index| before.get(index)) {
         let is_index = |at: usize| {

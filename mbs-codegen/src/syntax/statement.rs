@@ -12,6 +12,7 @@ use super::foreign;
 use super::foreign_words;
 use super::keywords::{LATER, STATEMENTS};
 use super::missing;
+use super::other_forms;
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::picture;
 use super::quotation::until_end;
@@ -162,6 +163,11 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
         parser.skip(1);
         return Err(GivenUp);
     }
+    if let Some((message, help)) = other_forms::no_statement(word) {
+        parser.diagnostics.report(span, message, help);
+        parser.skip(1);
+        return Err(GivenUp);
+    }
     let cure = foreign_words::one_of_two(word);
     let near = || nearest(word, STATEMENTS.into_iter().chain(picture::PICTURES)).filter(|_| cure.is_none());
     let meant = foreign_words::meant(word).or_else(near);
@@ -260,9 +266,16 @@ fn read_out(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 const DRIVE: &str = "write `drive crank: phi == omega*t;`";
 fn read_drive(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let begin = parser.rest();
     let name = parser.name(DRIVE)?;
     let mut read = || {
+        if let Some(reported) = other_forms::nameless(parser, "drive", "motor", begin) {
+            return reported;
+        }
         parser.expect(':', DRIVE)?;
+        if let Some(reported) = other_forms::drive_of_a_coordinate(parser, &name.text) {
+            return reported;
+        }
         equation(parser, DRIVE)
     };
     match read() {

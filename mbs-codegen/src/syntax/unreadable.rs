@@ -14,7 +14,7 @@ pub struct Unreadable {
 }
 
 /// Characters that are none of Rust's, and what stands in their place.
-const CHARACTERS: [(&str, &str); 12] = [
+const CHARACTERS: [(&str, &str); 17] = [
     ("×⋅∙∗", "write a product with `*`"),
     ("÷", "write a quotient with `/`"),
     ("−–—", "write a minus sign with `-`"),
@@ -22,6 +22,11 @@ const CHARACTERS: [(&str, &str); 12] = [
     ("≤", "write `<=`"),
     ("≥", "write `<=` and the larger side behind it"),
     ("≡", "write `==`"),
+    ("±", "write a tolerance behind a comma: `, tolerance 0.1mm`"),
+    ("⁰¹⁴⁵⁶⁷⁸⁹⁻", "write a power with `^`: `x^4`"),
+    ("₀₁₂₃₄₅₆₇₈₉", "write an index as digits of the name: `phi1`"),
+    ("“”„«»", "write straight quotes: `\"`"),
+    ("\\", "write a quotient with `/`"),
     ("²", "write a square as `^2`"),
     ("³", "write a cube as `^3`"),
     ("√", "write a root as `sqrt(x)`"),
@@ -99,6 +104,21 @@ fn scan(source: &str, is_call: bool) -> Option<Unreadable> {
                     characters.next();
                 }
             }
+            '/' if characters.peek() == Some(&'*') => {
+                characters.next();
+                column += 1;
+                let mut last = ' ';
+                for next in characters.by_ref() {
+                    column += 1;
+                    if next == '\n' {
+                        (line, column) = (line + 1, 0);
+                    }
+                    if (last, next) == ('*', '/') {
+                        break;
+                    }
+                    last = next;
+                }
+            }
             '"' if first.is_ascii_digit() => {
                 return fault(line, column, "a quote is no unit".into(), "write inches as a unit: `2inch`");
             }
@@ -174,6 +194,11 @@ fn scan(source: &str, is_call: bool) -> Option<Unreadable> {
                 if let Some((_, help)) = CHARACTERS.iter().find(|(known, _)| known.contains(character)) {
                     return fault(line, column, format!("`{character}` is no character of a text"), help);
                 }
+                let is_of_a_name = character.is_alphanumeric();
+                if !character.is_ascii() && !character.is_whitespace() && !is_of_a_name {
+                    let help = "names consist of letters, digits and `_`, signs are those of the keyboard";
+                    return fault(line, column, format!("`{character}` is no character of a text"), help);
+                }
             }
         }
         let is_word = |c: char| c.is_alphanumeric() || c == '_';
@@ -194,12 +219,27 @@ fn scan(source: &str, is_call: bool) -> Option<Unreadable> {
     }
     let (bracket, line, column, _) = open.pop()?;
     let (bracket, line, column) = doubtful.unwrap_or((bracket, line, column));
+    if bracket == '{'
+        && let Some(header) = header_before(source, line, column)
+    {
+        let help = format!("end the header with a `;` in its place: `{header};`");
+        return fault(line, column, "the statements of a text stand in no braces".into(), &help);
+    }
     fault(
         line,
         column,
         format!("`{bracket}` is never closed"),
         &format!("close it with `{}`", closing(bracket)),
     )
+}
+
+/// `pub mechanism Name` in front of a bracket.
+fn header_before(source: &str, line: usize, column: usize) -> Option<&str> {
+    let line = source.lines().nth(line.checked_sub(1)?)?;
+    let end = line.char_indices().nth(column.checked_sub(1)?)?.0;
+    let header = line.get(..end)?.trim();
+    let words: Vec<&str> = header.split_whitespace().collect();
+    matches!(words.as_slice(), ["mechanism", _] | [.., "pub", "mechanism", _]).then_some(header)
 }
 
 fn closing(bracket: char) -> char {

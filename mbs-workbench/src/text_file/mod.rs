@@ -5,11 +5,14 @@ pub mod excerpt;
 
 use core::fmt;
 use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
 
 pub use self::argument::{Argument, is_file};
 use mbs_codegen::{Call, Fault, Outline};
 
 use crate::hash::hash_of_text;
+use crate::mismatch::nearest;
 
 /// A mechanism's text in a file, without faults, in a scene.
 #[derive(Clone, Debug)]
@@ -85,7 +88,7 @@ impl TextFile {
         let path = asked.path.to_string();
         let unreadable = |error: std::io::Error| TextFileError::Unreadable {
             path: path.clone(),
-            reason: error.to_string(),
+            reason: reason(&path, &error),
         };
         let content = fs::read_to_string(&path).map_err(unreadable)?;
         let calls = calls(&path, &content)?;
@@ -223,9 +226,27 @@ pub fn listed(argument: &str) -> Result<Vec<Listed>, TextFileError> {
 fn texts(argument: &str) -> Result<(String, String, Vec<Call>), TextFileError> {
     let path = Argument::of(argument).path.to_string();
     let content = fs::read_to_string(&path)
-        .map_err(|error| TextFileError::Unreadable { path: path.clone(), reason: error.to_string() })?;
+        .map_err(|error| TextFileError::Unreadable { path: path.clone(), reason: reason(&path, &error) })?;
     let calls = calls(&path, &content)?;
     Ok((path, content, calls))
+}
+
+/// Message of the operating system, with a text of nearly this name where there is no such file.
+fn reason(path: &str, error: &std::io::Error) -> String {
+    let near = || {
+        let asked = Path::new(path);
+        let folder = asked.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let files = fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+        let names = files.filter_map(|file| file.ok()?.file_name().into_string().ok());
+        let texts: Vec<String> =
+            names.filter(|name| name.ends_with(".mbs") || name.ends_with(".rs")).collect();
+        let name = nearest(asked.file_name()?.to_str()?, texts.iter().map(String::as_str))?;
+        Some(asked.with_file_name(name).display().to_string())
+    };
+    match near().filter(|_| error.kind() == ErrorKind::NotFound) {
+        Some(near) => format!("{error}; did you mean `{near}`?"),
+        None => error.to_string(),
+    }
 }
 
 fn calls(path: &str, content: &str) -> Result<Vec<Call>, TextFileError> {
