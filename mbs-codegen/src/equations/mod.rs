@@ -2,6 +2,8 @@
 //! metric; M, Q and their derivatives, energies, powers.
 
 mod acting_bodies;
+#[cfg(test)]
+mod bristles_tests;
 mod contacts;
 pub mod continuity;
 #[cfg(test)]

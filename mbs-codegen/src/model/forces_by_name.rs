@@ -33,8 +33,9 @@ pub enum Force {
     Line(SpringDamper),
     /// A torque against an angle.
     Turn(Turn),
-    /// A force along a length; `sliding` is the same without what holds at zero speed, which has no power.
-    Friction { along: Id, force: Id, sliding: Id },
+    /// A force along a length; `sliding` is the same without what holds at zero speed, which has no power. `deflection`
+    /// is the state of bristles, where it has any.
+    Friction { along: Id, force: Id, sliding: Id, deflection: Option<Id> },
     /// A force along a gap.
     Contact { gap: Id, force: Id },
     /// A force or torque as written, and its components with the displacement of each.

@@ -13,13 +13,18 @@ use crate::syntax::ast::Name;
 impl Resolver<'_> {
     /// −(μ |N| tanh(ṡ/v₀) + c ṡ) along s: Coulomb's law, smooth below the speed v₀. With `sticks` the law is set-valued.
     ///
+    /// With `bristles` it has a state.
+    ///
     /// Source: Andersson, Söderberg & Björklund 2007, the tanh model.
     pub(super) fn friction(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
         let field = |field: &str| given.scalar(field).ok_or(Fault);
         let (along, normal) = (field("along")?, field("normal")?);
         let coefficient = field("coefficient")?;
         let span = name.span;
-        let [force, sliding] = if let Some(most) = given.scalar("sticks") {
+        let bristles = self.bristles(name, &full, given, [along, normal, coefficient])?;
+        let [force, sliding] = if let Some(bristles) = bristles {
+            [bristles.force; 2]
+        } else if let Some(most) = given.scalar("sticks") {
             let index = self.dynamics().sticking.len();
             let [limit, force, sliding] = self.elaborate(Reach::Force, |work| {
                 set_valued(work, index, [along, normal, coefficient, most], given, name)
@@ -40,7 +45,8 @@ impl Resolver<'_> {
             })?;
             [force; 2]
         };
-        self.names.seen.define(&name.text, Seen::Friction { along, force, sliding });
+        let deflection = bristles.map(|bristles| bristles.deflection);
+        self.names.seen.define(&name.text, Seen::Friction { along, force, sliding, deflection });
         self.force(name, full, Action::Work(vec![(force, along)]));
         Ok(())
     }
@@ -90,7 +96,7 @@ impl Resolver<'_> {
 }
 
 /// Adds c ṡ, where it is given.
-fn with_drag(
+pub(super) fn with_drag(
     work: &mut Elaborator<'_>,
     force: Id,
     rate: Id,

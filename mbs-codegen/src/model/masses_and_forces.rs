@@ -96,6 +96,8 @@ pub fn known(element: Element) -> Vec<Known> {
             ("speed", FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND)), true),
             ("viscous", scalar(per_metre.times(Dimension::SECOND)), false),
             ("sticks", scalar(Dimension::NUMBER), false),
+            ("bristles", FieldKind::Constant(Dimension::METRE), false),
+            ("damping", scalar(Dimension::SECOND.over(Dimension::METRE)), false),
         ],
         Element::Contact => vec![
             ("gap", FieldKind::Scalar(Dimension::METRE, Reach::Position), true),
@@ -235,14 +237,14 @@ impl Resolver<'_> {
             }
             match self.field(field, *kind) {
                 Ok(value) => {
-                    self.signed(known_name, name, &value);
+                    let value = self.signed(known_name, name, value);
                     given.0.push((known_name, value));
                 }
                 Err(Fault) => faulty = true,
             }
         }
-        // Friction with stiction needs no speed at which it is smooth.
-        let spared = |name: &str| name == "speed" && is_given("sticks");
+        // Friction with stiction or bristles needs no speed at which it is smooth.
+        let spared = |name: &str| name == "speed" && (is_given("sticks") || is_given("bristles"));
         let is_missing = |name: &str| !is_given(name) && !misspelled.contains(&name) && !spared(name);
         for (missing, ..) in known.iter().filter(|(known, _, needed)| *needed && is_missing(known)) {
             let (message, help) = match (kind_of, *missing) {
@@ -262,15 +264,20 @@ impl Resolver<'_> {
         if faulty { Err(Fault) } else { Ok(given) }
     }
 
-    /// Keeps values that have a least one; entries of an inertia off its diagonal have none.
-    fn signed(&mut self, field: &'static str, name: &Name, value: &Value) {
-        if let Some(least) = Least::of(field) {
-            let (of, span) = (name.text.clone(), value.span);
-            let diagonal = value.items.iter().take(3);
-            let signed =
-                diagonal.map(|item| NonNegative { field, least, of: of.clone(), value: item.id, span });
-            self.dynamics().signed.extend(signed);
+    /// Keeps values that have a least one, to be checked with all others; entries of an inertia off its diagonal have none. The
+    /// law goes on with 1 in place of a number that it cannot divide by, for quotients of numbers are computed at once.
+    fn signed(&mut self, field: &'static str, name: &Name, mut value: Value) -> Value {
+        let Some(least) = Least::of(field) else { return value };
+        let (of, span) = (name.text.clone(), value.span);
+        for item in value.items.iter_mut().take(3) {
+            let signed = NonNegative { field, least, of: of.clone(), value: item.id, span };
+            let node = self.model.expressions.node(item.id);
+            self.dynamics().signed.push(signed);
+            if least == Least::AboveZero && matches!(node, Node::Number(number) if number <= 0.0) {
+                item.id = self.model.expressions.push(Node::Number(1.0));
+            }
         }
+        value
     }
 
     fn field(&mut self, field: &Field, kind: FieldKind) -> Result<Value, Fault> {

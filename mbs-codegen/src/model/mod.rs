@@ -3,6 +3,7 @@
 mod arithmetic;
 mod bare_angles;
 mod bodies;
+mod bristles;
 mod compound;
 mod constraints;
 mod contact;

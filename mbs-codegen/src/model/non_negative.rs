@@ -22,7 +22,9 @@ impl Least {
             "mass" | "inertia" | "stiffness" | "damping" | "coefficient" | "viscous" | "sticks" => {
                 Some(Least::Zero)
             }
-            "speed" | "depth" | "exponent" | "bound" | "restitution" | "approach" => Some(Least::AboveZero),
+            "speed" | "depth" | "exponent" | "bound" | "restitution" | "approach" | "bristles" => {
+                Some(Least::AboveZero)
+            }
             _ => None,
         }
     }
@@ -101,7 +103,10 @@ fn wrong(signed: &NonNegative, value: f64) -> Option<Diagnostic> {
         "1 - restitution" => {
             "a rebound faster than the approach feeds energy in: it is above 0 and at most 1"
         }
-        "approach" => "it is the speed at touch for which the restitution holds: `approach: 0.5`",
+        "approach" => {
+            "write the speed at touch for which the restitution holds, `approach: 0.5`: a slower touch returns with a larger share"
+        }
+        "bristles" => "it is their deflection at the force of sliding: `bristles: 10um`",
         "bound" => {
             "it is the largest |second time derivative| of the open gap: under its weight alone `bound: 9.81`"
         }

@@ -1,4 +1,5 @@
-//! Forces that expressions refer to by name: `force(spring)`, `gap(cam)`, `normal(cam)`, `slip(guide)`, `power(motor)`.
+//! Forces that expressions refer to by name: `force(spring)`, `gap(cam)`, `normal(cam)`, `slip(guide)`, `deflection(guide)`,
+//! `power(motor)`.
 
 use proc_macro2::Span;
 
@@ -89,11 +90,20 @@ impl Elaborator<'_> {
                 let rate = self.expressions.push(Node::Rate(*along, 1));
                 Ok(self.known(rate, Dimension::METRE.over(Dimension::SECOND), span))
             }
+            ("deflection", Force::Friction { deflection: Some(state), .. }) => {
+                Ok(self.known(*state, Dimension::METRE, span))
+            }
             ("power", _) => self.power_of_force(&force, span),
+            ("deflection", Force::Friction { .. }) => {
+                let name = &target.name.text;
+                let message = format!("`{name}` has no bristles and no `deflection`");
+                let help = "write `bristles: 10um`, their deflection at the force of sliding";
+                Err(self.fault(target.name.span, message, help))
+            }
             _ => {
                 let name = &target.name.text;
                 let word = self.names.seen.declared.get(name).map_or("force", |declared| declared.word);
-                let of = if function == "slip" { "friction" } else { "contact" };
+                let of = if matches!(function, "slip" | "deflection") { "friction" } else { "contact" };
                 let message = format!("`{name}` is a `{word}` and has no `{function}`");
                 let help = format!(
                     "`{function}` is that of a `{of}`; of a `{word}` there are `force({name})` and `power({name})`"
@@ -172,7 +182,7 @@ impl Elaborator<'_> {
                     (None, None) => {
                         let word = match function {
                             "gap" | "normal" => "contact",
-                            "slip" => "friction",
+                            "slip" | "deflection" => "friction",
                             _ => "tsda",
                         };
                         format!(

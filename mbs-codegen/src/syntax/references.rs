@@ -9,10 +9,11 @@ use super::parser::{Parser, Read};
 use super::tokens::TokenKind;
 
 /// Functions of rows, drives, pins and bodies, then those of [`OF_FORCES`].
-pub const REFERRING: [&str; 8] = ["lambda", "effort", "reaction", "force", "gap", "normal", "slip", "power"];
+pub const REFERRING: [&str; 9] =
+    ["lambda", "effort", "reaction", "force", "gap", "normal", "slip", "deflection", "power"];
 
 /// Functions of forces by their names. A text may declare these words: then they are its own.
-pub const OF_FORCES: [&str; 5] = ["force", "gap", "normal", "slip", "power"];
+pub const OF_FORCES: [&str; 6] = ["force", "gap", "normal", "slip", "deflection", "power"];
 
 impl Reader {
     /// `true` if `word` begins a reference here, where references are read.
@@ -32,6 +33,7 @@ impl Reader {
             "gap" => "write `gap(cam)`, the name of a contact",
             "normal" => "write `normal(cam)`, the name of a contact",
             "slip" => "write `slip(guide)`, the name of a friction",
+            "deflection" => "write `deflection(guide)`, the name of a friction with bristles",
             "power" => "write `power(spring)`, the name of a force",
             _ => "write `reaction(B, rod)`, a pin and a body",
         };

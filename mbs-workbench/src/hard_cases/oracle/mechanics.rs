@@ -173,6 +173,9 @@ fn friction(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
     if fields.scalar("sticks")?.is_some() {
         return Err(Gap("friction that sticks".to_string()));
     }
+    if fields.scalar("bristles")?.is_some() {
+        return Err(Gap("friction with bristles".to_string()));
+    }
     let along = fields.required("along")?;
     let [normal, coefficient, speed] = ["normal", "coefficient", "speed"].map(|name| fields.required(name));
     let limit = coefficient?.value.v * normal?.value.v.abs();
@@ -193,6 +196,9 @@ fn contact(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
         }
         _ => depth,
     };
+    if fields.scalar("restitution")?.is_some() {
+        return Err(Gap("a contact with a restitution".to_string()));
+    }
     let damping = fields.scalar("damping")?.unwrap_or_default().value.v;
     let share = (1.0 - damping * gap.rate.v).max(0.0);
     found.forces.push(Along { force: stiffness * depth * share, place: gap });

@@ -101,6 +101,29 @@ fn parts_that_are_not_evaluated_are_named() {
 }
 
 #[test]
+fn laws_that_are_not_evaluated_are_named() {
+    let sliding = "along: p[0], normal: 5N, coefficient: 0.2";
+    let pressing = "gap: p[1] + 2m, stiffness: 1e4";
+    let laws = [
+        (format!("friction f {{ {sliding}, sticks: 0.3 }}"), "friction that sticks"),
+        (format!("friction f {{ {sliding}, bristles: 1mm }}"), "friction with bristles"),
+        (
+            format!("contact c {{ {pressing}, restitution: 0.5, approach: 1 }}"),
+            "a contact with a restitution",
+        ),
+    ];
+    let balance = |text: &str| {
+        let oracle = read(&format!("{PENDULUM} {text}"))?;
+        oracle.equations_of_motion(&lowest(1.5), &[0.3, 0.7])
+    };
+    for (law, words) in laws {
+        let Err(Gap(found)) = balance(&law) else { panic!("{law}") };
+        assert!(found.contains(words), "{law}: {found}");
+    }
+    assert!(balance(&format!("contact c {{ {pressing}, damping: 0.5 }}")).is_ok());
+}
+
+#[test]
 fn of_the_compiler_of_texts_the_syntax_alone_is_used() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/hard_cases/oracle");
     let mut seen = 0;

@@ -1,6 +1,4 @@
-//! Laws of the language reference against closed forms and quadratures: drag, motor, one-way spring, gas spring, Stribeck friction.
-#![forbid(unsafe_code)]
-#![deny(warnings, missing_docs, unreachable_pub)]
+//! Drag, motor, one-way spring, gas spring, Stribeck friction.
 
 use core::f64::consts::PI;
 

@@ -1,0 +1,223 @@
+//! A text with every effect of the library: what a scene leaves out was never written, and costs nothing to expand.
+#![forbid(unsafe_code)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::time::Duration;
+
+use quote::ToTokens;
+use syn::visit::{Visit, visit_item_impl};
+
+/// Bodies that the effects act on.
+const COMMON: &str = "mechanism Library; param mass: kg = 2; coord p: [m; 2] = [0.1, 0.29]; coord phi: rad = 0.1; coord a: [rad; 2] = 0;
+    body wheel { mass: mass, com: p, inertia: 0.3, angle: phi } gravity weight { acceleration: [0, -9.81] }
+    for i in 0..2 { body disc { mass: mass, com: [0, 0], inertia: 0.02, angle: a[i] } }
+    out height: m = p[1]; out turning: rad/s = der(phi);";
+
+/// One a kind of force, each with names of its own.
+const EFFECTS: [(&str, &str); 15] = [
+    ("constant", "torque constant: 2 [N*m] on a[0];"),
+    ("spring", "tsda coil { from: [0, 1m], to: p, stiffness: 400, length: 0.6, damping: 3 }"),
+    (
+        "bar",
+        "const G: Pa = 80e9; rsda bar { angle: a[0] - a[1], stiffness: G*(PI*(6mm)^4/32)/0.4m, damping: 0.01 }",
+    ),
+    ("drag", "param cw: N*s^2/m^2 = 0.8; force drag: -cw*der(p)*norm(der(p)) on p;"),
+    ("gas", "param n: 1 = 1.4; force gas: -150N*(1m/(1m - p[0]))^n on p[0];"),
+    (
+        "motor",
+        "input u: V; state current: A = 0; der(current) == (u - 1.2 [V/A]*current - 0.05 [V*s]*der(phi))/3 [V*s/A]; torque motor: 0.05 [N*m/A]*current on phi;",
+    ),
+    ("limited", "torque limited: min(max(5 [N*m]*(1 - der(a[0])/300 [rad/s]), -2 [N*m]), 2 [N*m]) on a[0];"),
+    (
+        "bushing",
+        "let w = [dot(p, unit(30deg)), dot(p, unit(120deg))]; force bush: [-4000 [N/m]*w[0] - 12 [N*s/m]*der(w[0]), -900 [N/m]*w[1]] on w;",
+    ),
+    (
+        "backlash",
+        "param play: m = 0.2mm; let s = 30mm*a[0] - 60mm*a[1]; force teeth: -1e6 [N/m]*(max(s - play/2, 0) + min(s + play/2, 0)) on s;",
+    ),
+    (
+        "smooth",
+        "friction smooth { along: 0.3m*a[0], normal: 5N, coefficient: 0.2, speed: 1mm/1s, viscous: 1 }",
+    ),
+    (
+        "sticking",
+        "friction sticking { along: 0.3m*a[1], normal: 5N, coefficient: 0.2, sticks: 0.3, speed: 0.1 }",
+    ),
+    (
+        "bristles",
+        "friction rough { along: p[0], normal: 5N, coefficient: 0.2, sticks: 0.3, speed: 0.1, bristles: 50um, damping: 10 }",
+    ),
+    (
+        "stop",
+        "contact stop { gap: 0.5m - p[0], stiffness: 1e5, exponent: 1.5, depth: 1mm, restitution: 0.6, approach: 0.5 }",
+    ),
+    (
+        "tyre",
+        "state v: m = 0; let slides = 0.3m*der(phi) - der(p[0]); der(v) == slides - abs(der(p[0]))*v/0.4m;
+         contact road { gap: p[1] - 0.3m, stiffness: 2e5, damping: 0.5 }
+         force tread: normal(road)*0.95*sin(1.65*atan(10*v/0.4m)) on p[0] - 0.3m*phi;",
+    ),
+    (
+        "turntable",
+        "param Omega: rad/s = 3; potential field = -mass*Omega^2*dot(p, p)/2; force coriolis: 2*mass*Omega*[der(p[1]), -der(p[0])] on p;",
+    ),
+];
+
+fn text(effects: &[(&str, &str)], scenes: &str) -> String {
+    let written = effects.iter().map(|(name, text)| format!("effect {name} {{ {text} }}\n"));
+    format!("{COMMON}\n{}{scenes}", written.collect::<String>())
+}
+
+fn scene(name: &str, of: impl Iterator<Item = &'static str>) -> String {
+    let names: Vec<&str> = of.collect();
+    format!("scene {name} = {};\n", names.join(" + "))
+}
+
+/// The scene of all effects: each one must be in a scene.
+fn whole() -> String {
+    scene("Whole", EFFECTS.iter().map(|(name, _)| *name))
+}
+
+/// Items of the implementations for a scene by trait and name, without the text and copies of the whole struct.
+struct Found<'a> {
+    scene: Option<&'a str>,
+    items: BTreeMap<String, String>,
+}
+
+impl Visit<'_> for Found<'_> {
+    fn visit_item_impl(&mut self, block: &syn::ItemImpl) {
+        let target = block.self_ty.to_token_stream().to_string();
+        let wanted = self.scene.is_none_or(|scene| target.ends_with(&format!(":: {scene} >")));
+        let Some((path, _)) = block.trait_.as_ref().filter(|_| wanted) else {
+            return visit_item_impl(self, block);
+        };
+        let name = path.segments.last().expect("a trait").ident.to_string();
+        if !["Mechanism", "Dynamic", "Partitioned"].contains(&name.as_str()) {
+            return;
+        }
+        for item in &block.items {
+            let key = match item {
+                syn::ImplItem::Fn(function) => function.sig.ident.to_string(),
+                syn::ImplItem::Const(constant) => constant.ident.to_string(),
+                syn::ImplItem::Type(kind) => kind.ident.to_string(),
+                other => panic!("{}", other.to_token_stream()),
+            };
+            if !["SOURCE", "SCENE", "Lane", "lane", "Group", "group", "enclosed"].contains(&key.as_str()) {
+                self.items.insert(format!("{name}::{key}"), item.to_token_stream().to_string());
+            }
+        }
+    }
+}
+
+fn items(file: &syn::File, scene: Option<&str>) -> BTreeMap<String, String> {
+    let mut found = Found { scene, items: BTreeMap::new() };
+    found.visit_file(file);
+    assert!(found.items.len() > 50, "{:?}", found.items.keys());
+    found.items
+}
+
+fn expanded(text: &str) -> syn::File {
+    let tokens = mbs_codegen::expand_source(text).unwrap_or_else(|faults| panic!("{faults}"));
+    syn::parse2(tokens).expect("Rust")
+}
+
+#[test]
+fn a_scene_without_an_effect_is_the_text_in_which_it_was_never_written() {
+    let others = |left_out: &'static str| EFFECTS.iter().filter(move |(name, _)| *name != left_out);
+    let scenes =
+        EFFECTS.map(|(name, _)| scene(&format!("Without_{name}"), others(name).map(|(name, _)| *name)));
+    let whole = expanded(&text(&EFFECTS, &scenes.concat()));
+    for (name, _) in EFFECTS {
+        let without = items(&whole, Some(&format!("Without_{name}")));
+        let rest: Vec<(&str, &str)> = others(name).copied().collect();
+        let never_written = items(&expanded(&text(&rest, "")), None);
+        assert_eq!(without.len(), never_written.len(), "{name}");
+        for (key, item) in &never_written {
+            assert!(without.get(key) == Some(item), "`{key}` without `{name}`");
+        }
+    }
+}
+
+/// Processor time of this thread, where the system tells it: other work on the machine does not count.
+fn processor_time() -> Option<Duration> {
+    let told = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    told.split(' ').next()?.parse().ok().map(Duration::from_nanos)
+}
+
+/// Code that a scene adds grows with its effects; time does too, where the system tells that of a thread.
+#[test]
+fn what_a_scene_takes_to_expand_grows_with_what_it_selects() {
+    let names = EFFECTS.map(|(name, _)| name);
+    let expanded = |scenes: &str| {
+        let text = text(&EFFECTS, &format!("{}{scenes}", whole()));
+        mbs_codegen::expand_source(&text).unwrap_or_else(|faults| panic!("{faults}"))
+    };
+    let base = expanded("").to_string().len();
+    let adds =
+        |names: &[&'static str]| expanded(&scene("Next", names.iter().copied())).to_string().len() - base;
+    let singles = names.map(|name| adds(&[name]));
+    let all = adds(&names);
+    let (least, sum) = (singles.iter().min().expect("effects"), singles.iter().sum::<usize>());
+    assert!(2 * least < all && all < sum, "{least} {all} {sum}");
+
+    let time = |names: &[&'static str]| {
+        let scenes: String =
+            (0..6).map(|number| scene(&format!("Number{number}"), names.iter().copied())).collect();
+        let once = || {
+            let started = processor_time()?;
+            expanded(&scenes);
+            Some(processor_time()? - started)
+        };
+        (0..3).filter_map(|_| once()).min()
+    };
+    // The whole is in both.
+    if let Some((few, many)) = time(&["drag"]).zip(time(&names)) {
+        println!(
+            "scenes of one effect and of {}: {few:?} and {many:?}, {least} and {all} characters",
+            names.len()
+        );
+        assert!(3 * few < 2 * many, "{few:?} for one effect, {many:?} for all");
+    }
+}
+
+/// Operations of a right-hand side: of the position, the forces and the rates of states.
+fn operations(scenes: &str) -> usize {
+    let report = mbs_codegen::structure_of(&text(&EFFECTS, &format!("{}{scenes}", whole())), Some("Scene"))
+        .expect("a scene");
+    let counted = ["`position`", "`force`", "`state_rates`"];
+    let costs =
+        report.costs.into_iter().filter(|(name, _)| counted.iter().any(|counted| name.starts_with(counted)));
+    costs
+        .map(|(_, cost)| {
+            cost.additions
+                + cost.multiplications
+                + cost.divisions
+                + cost.sine_cosines
+                + cost.functions
+                + cost.selects
+        })
+        .sum()
+}
+
+#[test]
+fn operations_of_a_right_hand_side_are_those_of_its_effects() {
+    let of = |names: &[&'static str]| operations(&scene("Scene", names.iter().copied()));
+    // A torque that is constant: it adds nothing that another effect takes.
+    let base = of(&["constant"]);
+    let names = EFFECTS.map(|(name, _)| name);
+    let others = &names[1..];
+    let singles: Vec<usize> = others.iter().map(|name| of(&["constant", name]) - base).collect();
+    for (name, operations) in others.iter().zip(&singles) {
+        println!("{name}: {operations} operations a right-hand side");
+    }
+    let all = of(&names) - base;
+    let sum: usize = singles.iter().sum();
+    assert!(all <= sum && 10 * all > 8 * sum, "{all} of {sum}");
+    let cost =
+        |wanted: &str| others.iter().zip(&singles).find(|(name, _)| **name == wanted).map(|(_, cost)| *cost);
+    // The force and the rate of the deflection take the same values, each for itself.
+    let [smooth, bristles] = ["smooth", "bristles"].map(|name| cost(name).expect("an effect"));
+    assert!(smooth >= 5 && bristles <= 2 * (smooth + 10), "{smooth} {bristles}");
+}
