@@ -53,6 +53,9 @@ impl Elaborator<'_> {
             let known: Vec<&str> = self.names.row_groups().collect();
             let help = match nearest(&target.name.text, known.iter().copied()) {
                 Some(name) => format!("did you mean `{name}`?"),
+                None if known.is_empty() => {
+                    "a multiplier is that of a row, and the text has no constraint or drive".into()
+                }
                 None => format!("rows are those of {}", list(&known)),
             };
             let message = format!("`{}` is no constraint or drive", target.name.text);

@@ -67,7 +67,7 @@ pub fn resolve(
     work.model.settle_reference_length();
     inputs::check(work.model, work.diagnostics);
     if work.names.elements_are_sound() {
-        unused_elements::check(work.model, work.names.elements_are_sound(), work.diagnostics);
+        unused_elements::check(work.model, work.diagnostics);
     }
     (model, names)
 }

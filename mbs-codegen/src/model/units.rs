@@ -111,7 +111,8 @@ impl Dimension {
         for (symbol, exponent) in &unit.factors {
             let coherent = Self::of_symbol(&symbol.text);
             if coherent.is_none() {
-                let (message, help) = unknown_unit(&symbol.text);
+                let (message, help) =
+                    of_a_compound(unit, &symbol.text).unwrap_or_else(|| unknown_unit(&symbol.text));
                 diagnostics.report(symbol.span, message, help);
             }
             let base = coherent.or_else(|| with_suffix(1.0, &symbol.text).ok().map(|(_, meant)| meant));
@@ -152,6 +153,19 @@ fn of_si(symbol: &str) -> String {
 /// Units that are met most.
 const USUAL: &str =
     "usual are m, mm, kg, s, rad, deg, rpm, N, N*m, J, W, Pa; numbers without a unit have `1`";
+
+/// Message and cure at a symbol with a prefix in a compound unit: `N/m` for `kN/m`.
+fn of_a_compound(unit: &ast::Unit, symbol: &str) -> Option<(String, String)> {
+    let (_, _, _, coherent) = SUFFIXES.iter().find(|(suffix, ..)| *suffix == symbol)?;
+    let rest = unit.text.strip_prefix(symbol).filter(|rest| rest.starts_with(['*', '/', '^']))?;
+    Some((
+        format!("`{symbol}` is no coherent SI unit"),
+        format!(
+            "declare `{coherent}{rest}` and write the unit in brackets behind the number: `100 [{}]`",
+            unit.text
+        ),
+    ))
+}
 
 fn unknown_unit(symbol: &str) -> (String, String) {
     if let Some((_, _, _, coherent)) = SUFFIXES.iter().find(|(suffix, ..)| *suffix == symbol) {

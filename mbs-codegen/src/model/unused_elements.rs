@@ -7,11 +7,10 @@ use super::springs::{SpringDamper, Turn};
 use crate::diagnostics::Diagnostics;
 
 /// Before: a resolved model. After: forces without effect are reported.
-///
-/// `is_whole`: `false` if a body or element had a fault, so that it is missing among those of the model.
-pub fn check(model: &Model, is_whole: bool, diagnostics: &mut Diagnostics) {
+pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let Some(dynamics) = &model.dynamics else { return };
-    if is_whole {
+    // The bodies may stand where a fault is.
+    if diagnostics.number() == 0 {
         gravity(dynamics, diagnostics);
     }
     let moving = model.expressions.made_of(|node| matches!(node, Node::Coordinate(_)));

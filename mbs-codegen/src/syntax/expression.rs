@@ -7,6 +7,7 @@ use super::foreign;
 use super::foreign_words;
 use super::missing::{self, Around};
 use super::number::number;
+use super::other_forms;
 use super::parser::{Parser, Read};
 use super::tokens::TokenKind;
 
@@ -183,7 +184,9 @@ impl Reader {
                 self.pending.push(Pending::Index { indices: 1, span });
                 Ok(Some(true))
             }
-            TokenKind::Punctuation('.', false) => self.component(parser),
+            TokenKind::Punctuation('.', false) if !other_forms::at_wrong_end(parser) => {
+                self.component(parser)
+            }
             TokenKind::Punctuation('%', _) => foreign::percent(parser),
             TokenKind::Punctuation('?', _) => foreign::condition(parser),
             TokenKind::Punctuation(',', _) if !self.is_list() && foreign::decimal_comma(parser) => {

@@ -5,6 +5,7 @@ use proc_macro2::Span;
 use super::ast::{Declares, Name, StatementKind};
 use super::foreign::CALLED;
 use super::number_notations;
+use super::other_forms;
 use super::parser::{GivenUp, Parser, Read};
 use super::picture;
 use super::quotation::{operand_before, operand_behind, quoted, until_end, up_to_comma};
@@ -46,6 +47,19 @@ pub fn second_operand<T>(parser: &mut Parser<'_>, around: Around) -> Read<T> {
     };
     let (message, help) = if let Some(number) = number_notations::grouped(parser, first, second) {
         ("a space stands in a number".into(), format!("write `{number}`"))
+    } else if let Some(inverse) = other_forms::inverse(parser.before()) {
+        let argument = match second {
+            [Token { kind: TokenKind::Open('('), .. }, ..] => right,
+            _ => format!("({right})"),
+        };
+        ("an inverse function has a name of its own".into(), format!("write `{inverse}{argument}`"))
+    } else if matches!(second, [Token { kind: TokenKind::Identifier(_), .. }])
+        && matches!(parser.peek_at(1), TokenKind::Punctuation(':', false))
+    {
+        (
+            format!("a comma is missing between `{left}` and the field `{right}`"),
+            format!("write `{left}, {right}: …`"),
+        )
     } else if CALLED.contains(&name) {
         let argument = match second {
             [Token { kind: TokenKind::Open('('), .. }, ..] => right,

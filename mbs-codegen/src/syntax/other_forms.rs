@@ -1,10 +1,13 @@
 //! Statements in the forms of other languages: a name that is left out, a range in brackets, a rate behind a guess, fields in
 //! parentheses. Each is one fault, whose cure is the statement in the user's own words.
 
+use super::foreign_words;
+use super::keywords::STATEMENTS;
 use super::number_notations::is_declared;
 use super::parser::{GivenUp, Parser, Read};
 use super::quotation::{inside, length_of_group, operand_before, quoted, until_end, up_to_comma};
 use super::tokens::{Token, TokenKind};
+use crate::diagnostics::nearest;
 
 fn is_word(token: &Token, word: &str) -> bool {
     matches!(&token.kind, TokenKind::Identifier(text) if text == word)
@@ -307,7 +310,7 @@ pub fn limit_as_a_range<T>(parser: &mut Parser<'_>, name: &str, quantity: &[Toke
 }
 
 /// Words of other languages that a text has no statement for, and its cure.
-const NO_STATEMENTS: [(&[&str], &str, &str); 5] = [
+const NO_STATEMENTS: [(&[&str], &str, &str); 6] = [
     (
         &["use", "import", "include", "from"],
         "a text is complete in itself",
@@ -318,6 +321,7 @@ const NO_STATEMENTS: [(&[&str], &str, &str); 5] = [
         "a text computes nothing in order",
         "name what is to be seen as an output, `out speed: m/s = der(x);`: `mbs` prints and draws outputs",
     ),
+    (&["redundant"], "the mark stands behind the name", "write `constraint closure redundant { … }`"),
     (
         &["while", "loop", "repeat"],
         "a text repeats statements a fixed number of times",
@@ -341,4 +345,73 @@ pub fn no_statement(word: &str) -> Option<(String, &'static str)> {
         .iter()
         .find(|(words, ..)| words.contains(&word))
         .map(|(_, reason, help)| (format!("`{word}` begins no statement: {reason}"), *help))
+}
+
+/// Keyword and name of a statement without a blank between them, `coordphi`, at the cursor. A word that is near to a keyword
+/// may be a slip, `limits`, unless the text uses the name.
+pub fn glued<'a>(parser: &Parser<'_>, word: &'a str) -> Option<(&'static str, &'a str)> {
+    let sign = matches!(parser.peek_at(1), TokenKind::Punctuation(':' | '=', _) | TokenKind::Open('{'));
+    let means_another = foreign_words::meant(word).is_some() || foreign_words::one_of_two(word).is_some();
+    if !sign || means_another {
+        return None;
+    }
+    let split = |keyword: &&'static str| {
+        let name = word.strip_prefix(*keyword)?;
+        name.starts_with(|first: char| first.is_alphabetic()).then_some((*keyword, name))
+    };
+    let (keyword, name) = STATEMENTS.iter().find_map(split)?;
+    let is_used = parser.before().iter().chain(parser.rest()).any(|token| is_word(token, name));
+    (is_used || nearest(word, STATEMENTS).is_none()).then_some((keyword, name))
+}
+
+/// `true` at a `,`, `:` or `.` in place of the `;` that ends a statement: the next line begins another one.
+pub fn at_wrong_end(parser: &Parser<'_>) -> bool {
+    let [sign, behind, ..] = parser.rest() else { return false };
+    let is_sign = [',', ':', '.'].iter().any(|mark| is_mark(sign, *mark));
+    let is_behind = matches!(&behind.kind, TokenKind::Identifier(word) if STATEMENTS.contains(&word.as_str()))
+        && behind.span.start().line > sign.span.start().line;
+    is_sign && (is_behind || behind.kind == TokenKind::End)
+}
+
+/// Takes such a sign, which is reported; `true` if there was any.
+pub fn takes_wrong_end(parser: &mut Parser<'_>) -> bool {
+    let is_wrong = at_wrong_end(parser);
+    if is_wrong {
+        let sign = parser.rest().first().map_or_else(String::new, Token::describe);
+        let message = format!("a statement ends with `;`, not with {sign}");
+        parser.diagnostics.report(parser.span(), message, "write `;` in its place");
+        parser.skip(1);
+    }
+    is_wrong
+}
+
+/// Reports `coord phi: rad[3]`, whose bracket is at the cursor behind the unit; `None` where there is none.
+pub fn shape_behind_a_unit<T>(parser: &mut Parser<'_>, unit: &str) -> Option<Read<T>> {
+    if *parser.peek() != TokenKind::Open('[') {
+        return None;
+    }
+    let lengths = quoted(inside(parser.rest().get(1..)?));
+    parser.diagnostics.report(
+        parser.span(),
+        "the lengths of an array stand in one bracket with its unit",
+        format!("write `[{unit}; {lengths}]`"),
+    );
+    Some(Err(GivenUp))
+}
+
+/// The inverse of a function that `sin^-1` means, which is at the end of the tokens before the cursor.
+pub fn inverse(before: &[Token]) -> Option<&'static str> {
+    let [.., function, power, minus, one] = before else { return None };
+    let is_one = matches!(&one.kind, TokenKind::Literal(text) if text == "1");
+    let TokenKind::Identifier(name) = &function.kind else { return None };
+    let inverses = [
+        ("sin", "asin"),
+        ("cos", "acos"),
+        ("tan", "atan"),
+        ("sinh", "asinh"),
+        ("cosh", "acosh"),
+        ("tanh", "atanh"),
+    ];
+    let inverse = inverses.iter().find(|(known, _)| known == name)?.1;
+    (is_one && is_mark(power, '^') && is_mark(minus, '-')).then_some(inverse)
 }

@@ -23,6 +23,16 @@ pub fn read_effect(parser: &mut Parser<'_>) -> Read<StatementKind> {
         Err(GivenUp) if *parser.peek() == TokenKind::Open('{') => Name { text: NAMELESS.into(), span },
         Err(GivenUp) => return Err(GivenUp),
     };
+    let is_sign = matches!(parser.peek(), TokenKind::Punctuation(':' | '=', _));
+    if is_sign && *parser.peek_at(1) == TokenKind::Open('{') {
+        let help = format!("write `effect {} {{ … }}`", name.text);
+        parser.diagnostics.report(
+            parser.span(),
+            "the statements of an effect stand in braces behind its name",
+            help,
+        );
+        parser.skip(1);
+    }
     parser.expect('{', EFFECT)?;
     Ok(StatementKind::Effect { name })
 }

@@ -168,6 +168,22 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
         parser.skip(1);
         return Err(GivenUp);
     }
+    if let Some((keyword, name)) = other_forms::glued(parser, word) {
+        let help = format!("write `{keyword} {name}`");
+        parser.diagnostics.report(span, format!("a blank is missing behind `{keyword}`"), help);
+        let name = Name { text: name.into(), span };
+        let declares = match keyword {
+            "coord" => Declares::Coord,
+            "param" => Declares::Param,
+            "input" => Declares::Input { rates: false },
+            "drive" | "constraint" => Declares::Rows,
+            "body" | "tsda" | "rsda" | "force" | "torque" => Declares::Element,
+            _ => Declares::Value,
+        };
+        parser.faulty.push(StatementKind::Faulty { name, declares, kind: None });
+        parser.skip(1);
+        return Err(GivenUp);
+    }
     let cure = foreign_words::one_of_two(word);
     let near = || nearest(word, STATEMENTS.into_iter().chain(picture::PICTURES)).filter(|_| cure.is_none());
     let meant = foreign_words::meant(word).or_else(near);

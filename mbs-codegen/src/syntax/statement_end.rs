@@ -3,6 +3,7 @@
 use super::foreign;
 use super::keywords::{LATER, STATEMENTS};
 use super::missing;
+use super::other_forms;
 use super::parser::{Parser, Read, doc_attribute};
 use super::picture;
 use super::quotation::length_of_group;
@@ -37,6 +38,9 @@ pub fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
     }
     if at_statement(parser) {
         missing::missing_semicolon(parser);
+        return Ok(());
+    }
+    if other_forms::takes_wrong_end(parser) {
         return Ok(());
     }
     match parser.peek() {

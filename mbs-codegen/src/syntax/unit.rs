@@ -6,6 +6,7 @@ use super::ast::{Name, Type, Unit};
 use super::expression::count;
 use super::foreign;
 use super::number_notations::by_another_name;
+use super::other_forms;
 use super::parser::{GivenUp, Parser, Read};
 use super::quotation::{operand_behind, quoted};
 use super::tokens::TokenKind;
@@ -14,7 +15,11 @@ use super::unit_symbols::{as_product, is_symbol};
 /// A unit, or `[unit; length, …]`; `help` shows the declaration that it belongs to.
 pub fn declared_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
     if !parser.take('[') {
-        return Ok(Type { unit: unit(parser)?, shape: Vec::new() });
+        let unit = unit(parser)?;
+        return match other_forms::shape_behind_a_unit(parser, &unit.text) {
+            Some(reported) => reported,
+            None => Ok(Type { unit, shape: Vec::new() }),
+        };
     }
     array_type(parser, help).inspect_err(|_| parser.skip_group())
 }

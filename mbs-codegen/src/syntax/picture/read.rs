@@ -7,7 +7,9 @@ use super::{Argument, Label, PICTURES, Picture, Place, Setting, Shape, TURN, Wor
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Name, StatementKind};
 use crate::syntax::expression::expression;
+use crate::syntax::foreign_words;
 use crate::syntax::parser::{GivenUp, Parser, Read};
+use crate::syntax::quotation::quoted;
 use crate::syntax::statement_end::{at_statement, end};
 use crate::syntax::tokens::TokenKind;
 
@@ -72,8 +74,10 @@ fn preset(parser: &mut Parser<'_>) -> Read<Picture> {
     let mut settings = Vec::new();
     parser.expect('{', PRESET)?;
     while !parser.take('}') {
+        let begin = parser.rest();
         let place = place(parser, PRESET)?;
-        parser.expect(':', PRESET)?;
+        let name = quoted(begin.get(..begin.len().saturating_sub(parser.rest().len())).unwrap_or_default());
+        foreign_words::colon(parser, &name, PRESET)?;
         settings.push(Setting { place, value: expression(parser)? });
         if !parser.take(',') {
             parser.expect('}', "values are separated by commas, and end with `}`")?;
