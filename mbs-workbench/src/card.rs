@@ -7,6 +7,7 @@ pub use mbs_codegen::picture::{Preset, Span};
 
 use crate::erased::erase::Erased;
 use crate::erased::facade::{AnyEquations, AnyMechanism};
+use crate::known_motion::KnownMotion;
 use crate::mismatch::{Mismatch, set};
 use crate::study::Study;
 
@@ -29,6 +30,8 @@ pub struct Card {
     pub stand_in: Option<Make>,
     /// A chain of computations with one report, for `mbs study`.
     pub study: Option<&'static Study>,
+    /// The motion from elsewhere, which `mbs cost` compares its references with.
+    pub known: Option<&'static KnownMotion>,
 }
 
 /// Makes a mechanism.
@@ -49,6 +52,7 @@ macro_rules! card {
             default_method: $crate::card::DefaultMethod::Projection,
             stand_in: ::core::option::Option::None,
             study: ::core::option::Option::None,
+            known: ::core::option::Option::None,
         }
     };
 }
@@ -83,6 +87,11 @@ impl Card {
     /// The card with a study.
     pub const fn studied_by(self, study: &'static Study) -> Self {
         Card { study: Some(study), ..self }
+    }
+
+    /// The card with a closed form or published digits of its motion.
+    pub const fn known_by(self, known: &'static KnownMotion) -> Self {
+        Card { known: Some(known), ..self }
     }
 
     /// Name on the command line; that of a scene is `text:Scene`.

@@ -30,6 +30,8 @@ pub mod forge;
 pub mod hard_cases;
 mod hash;
 #[cfg(feature = "program")]
+pub mod known_motion;
+#[cfg(feature = "program")]
 pub mod layout;
 #[cfg(feature = "program")]
 pub mod mismatch;

@@ -151,9 +151,33 @@ impl MotionMethod {
         matches!(self, MotionMethod::Explicit(_, DormandPrince8 | DormandPrince5 | Radau5))
     }
 
+    /// Order of a method of equal steps, where nothing is stiff; none of steps as long as a tolerance allows.
+    pub fn order(self) -> Option<i32> {
+        use IntegratorName::{DormandPrince5, DormandPrince8, Radau5, RungeKutta4, SemiImplicitEuler};
+        match self {
+            MotionMethod::Explicit(_, DormandPrince8 | DormandPrince5 | Radau5) => None,
+            MotionMethod::Explicit(_, RungeKutta4) => Some(4),
+            MotionMethod::Explicit(_, SemiImplicitEuler) => Some(1),
+            MotionMethod::Implicit(ImplicitName::Extrapolated) => Some(3),
+            MotionMethod::Implicit(ImplicitName::AugmentedLagrangian | ImplicitName::GeneralizedAlpha) => {
+                Some(2)
+            }
+        }
+    }
+
     /// `true` for methods that solve for the end of a step: the extrapolated reference judges them.
     pub fn is_implicit(self) -> bool {
         matches!(self, MotionMethod::Explicit(_, IntegratorName::Radau5) | MotionMethod::Implicit(_))
+    }
+}
+
+impl Closing {
+    /// Order of a step that a budget ends: the prediction by q, q̇ and q̈ has order 3, and each correction doubles it. None of one that closes.
+    pub fn order(self) -> Option<i32> {
+        match self {
+            Closing::Closed => None,
+            Closing::Evaluations(most) => Some(3 << most.min(8)),
+        }
     }
 }
 
@@ -247,5 +271,6 @@ mod tests {
         assert_eq!(all.len(), 5 * 5 + 3);
         assert_eq!(all[0].to_string(), "Projection with DormandPrince8");
         assert_eq!(all.iter().filter(|method| method.is_adaptive()).count(), 15);
+        assert!(all.iter().all(|method| method.is_adaptive() != method.order().is_some()));
     }
 }

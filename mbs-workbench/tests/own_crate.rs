@@ -182,6 +182,7 @@ fn a_new_crate_shows_a_page_and_its_tests_pass_and_it_runs_texts_of_files() {
         default_method: DefaultMethod::Projection,
         stand_in: None,
         study: None,
+        known: None,
     };
     let main =
         |constructor: &str| format!("fn main() {{\n    println!(\"{{}}\", {constructor}.crank);\n}}\n");

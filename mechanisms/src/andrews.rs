@@ -12,9 +12,19 @@
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
 use mbs_workbench::card::Card;
+use mbs_workbench::known_motion::{KnownCourse, KnownMotion};
+
+use crate::known::states;
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(Andrews::default());
+pub const CARD: Card = card!(Andrews::default()).known_by(&KNOWN);
+
+/// Published digits, with further instants.
+const KNOWN: KnownMotion = KnownMotion {
+    source: "published digits of the Test Set for IVP Solvers",
+    error: 1e-10,
+    course: KnownCourse::Table(|| states(include_str!("../tests/data/andrews.csv"), 7)),
+};
 
 mechanism! {
     /// Andrews' squeezer: one degree of freedom in seven angles.

@@ -15,9 +15,19 @@
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
 use mbs_workbench::card::Card;
+use mbs_workbench::known_motion::{KnownCourse, KnownMotion};
+
+use crate::known::states;
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(CarAxis::default());
+pub const CARD: Card = card!(CarAxis::default()).known_by(&KNOWN);
+
+/// Published digits, with further instants.
+const KNOWN: KnownMotion = KnownMotion {
+    source: "published digits of the Test Set for IVP Solvers",
+    error: 1e-10,
+    course: KnownCourse::Table(|| states(include_str!("../tests/data/car_axis.csv"), 4)),
+};
 
 mechanism! {
     /// Car axle: two degrees of freedom in four coordinates, with rows that depend on time.

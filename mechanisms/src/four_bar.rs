@@ -25,6 +25,8 @@
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
 use mbs_workbench::card::Card;
+use mbs_workbench::erased::facade::AnyEquations;
+use mbs_workbench::known_motion::{KnownCourse, KnownMotion, KnownState, parameter};
 
 mechanism! {
     /// Four-bar linkage with a coupler point.
@@ -78,7 +80,35 @@ mechanism! {
 }
 
 /// Entry in the list of mechanisms.
-pub const CARD: Card = card!(FourBar::default());
+pub const CARD: Card = card!(FourBar::default()).known_by(&KNOWN);
+
+/// Positions by the intersection of two circles.
+const KNOWN: KnownMotion = KnownMotion {
+    source: "closed form: intersection of two circles",
+    // Angles next to stretched positions have fewer digits than lengths.
+    error: 1e-13,
+    course: KnownCourse::Form(closed_form),
+};
+
+fn closed_form(four_bar: &dyn AnyEquations, t: f64) -> Option<KnownState> {
+    let [crank, coupler, rocker, ground] = ["L1", "L2", "L3", "L4"].map(|name| parameter(four_bar, name));
+    let [point, alpha, omega, side] = ["L5", "alpha", "omega", "side"].map(|name| parameter(four_bar, name));
+    let angle = omega * t;
+    let a = [crank * angle.cos(), crank * angle.sin()];
+    let way = [ground - a[0], -a[1]];
+    let square = way[0] * way[0] + way[1] * way[1];
+    // B along and across the way from A to D.
+    let along = (square + coupler * coupler - rocker * rocker) / (2.0 * square);
+    let across = side.signum() * (coupler * coupler / square - along * along).sqrt();
+    if across.is_nan() {
+        return None;
+    }
+    let to_b = [along * way[0] - across * way[1], along * way[1] + across * way[0]];
+    let coupler_angle = to_b[1].atan2(to_b[0]);
+    let rocker_angle = (a[1] + to_b[1]).atan2(a[0] + to_b[0] - ground);
+    let p = [a[0] + point * (alpha + coupler_angle).cos(), a[1] + point * (alpha + coupler_angle).sin()];
+    Some(KnownState { t, q: vec![p[0], p[1], angle, coupler_angle, rocker_angle], qd: Vec::new() })
+}
 
 #[cfg(test)]
 mod tests {

@@ -14,9 +14,28 @@
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
 use mbs_workbench::card::Card;
+use mbs_workbench::known_motion::{KnownCourse, KnownMotion, KnownState};
+
+use crate::known::table;
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(HeavyTop::default());
+pub const CARD: Card = card!(HeavyTop::default()).known_by(&KNOWN);
+
+/// Centre of mass of the benchmark.
+const KNOWN: KnownMotion = KnownMotion {
+    source: "reference table of the benchmark",
+    error: 1e-10,
+    course: KnownCourse::Table(known_states),
+};
+
+/// The table's centre of mass. Of its Euler parameters each row has a sign of its own.
+fn known_states() -> Vec<KnownState> {
+    let part = |row: &[f64], from: usize| {
+        row[from..from + 3].iter().copied().chain([f64::NAN; 4]).collect::<Vec<f64>>()
+    };
+    let rows = table(include_str!("../tests/data/heavy_top.csv"));
+    rows.iter().map(|row| KnownState { t: row[0], q: part(row, 1), qd: part(row, 4) }).collect()
+}
 
 mechanism! {
     /// A heavy top: three degrees of freedom in seven coordinates.

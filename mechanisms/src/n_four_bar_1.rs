@@ -13,7 +13,7 @@ use mbs_workbench::card;
 use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(NFourBar1::default());
+pub const CARD: Card = card!(NFourBar1::default()).known_by(&crate::n_four_bar::KNOWN);
 
 mechanism! {
     /// A parallelogram: one degree of freedom in four coordinates.

@@ -7,7 +7,8 @@ use mbs_workbench::card;
 use mbs_workbench::card::{Card, DefaultMethod};
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(NFourBar10::default()).moved_by(DefaultMethod::Velocity);
+pub const CARD: Card =
+    card!(NFourBar10::default()).known_by(&crate::n_four_bar::KNOWN).moved_by(DefaultMethod::Velocity);
 
 mechanism! {
     /// Ten parallelograms: one degree of freedom in 22 coordinates.

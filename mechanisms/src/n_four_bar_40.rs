@@ -7,7 +7,9 @@ use mbs_workbench::card;
 use mbs_workbench::card::{Card, DefaultMethod};
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(NFourBar40::default()).moved_by(DefaultMethod::VelocityInEqualSteps);
+pub const CARD: Card = card!(NFourBar40::default())
+    .known_by(&crate::n_four_bar::KNOWN)
+    .moved_by(DefaultMethod::VelocityInEqualSteps);
 
 mechanism! {
     /// Forty parallelograms: one degree of freedom in 82 coordinates.

@@ -9,9 +9,36 @@
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
 use mbs_workbench::card::Card;
+use mbs_workbench::erased::facade::AnyEquations;
+use mbs_workbench::known_motion::{KnownCourse, KnownMotion, KnownState, parameter};
+
+use crate::elliptic::{amplitude, quarter_period};
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(Pendulum::default());
+pub const CARD: Card = card!(Pendulum::default()).known_by(&KNOWN);
+
+/// The motion by elliptic functions: sin(θ/2) = sin 45° sn(√(g/L) t − K), with θ from the lowest position.
+const KNOWN: KnownMotion = KnownMotion {
+    source: "closed form by elliptic functions",
+    // Rounding of √(g/L) t, which grows to 31 rad.
+    error: 1e-13,
+    course: KnownCourse::Form(closed_form),
+};
+
+fn closed_form(pendulum: &dyn AnyEquations, t: f64) -> Option<KnownState> {
+    let [length, g] = ["L", "g"].map(|name| parameter(pendulum, name));
+    // Parameter of a swing of 90°.
+    const M: f64 = 0.5;
+    let frequency = (g / length).sqrt();
+    if !frequency.is_finite() {
+        return None;
+    }
+    let (sn, cn) = amplitude(frequency * t - quarter_period(M), M).sin_cos();
+    let dn = (1.0 - M * sn * sn).sqrt();
+    let (sin, cos) = (2.0 * M.sqrt() * sn * dn, 1.0 - 2.0 * M * sn * sn);
+    let speed = length * 2.0 * M.sqrt() * frequency * cn;
+    Some(KnownState { t, q: vec![length * sin, -length * cos], qd: vec![speed * cos, speed * sin] })
+}
 
 mechanism! {
     /// A simple pendulum: one degree of freedom in two coordinates.
@@ -40,4 +67,26 @@ mechanism! {
     draw link rod: A, bob;
     draw joint A;
     trace bob;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Time (s), position (m) and velocity (m/s), by quadrature apart from this workspace.
+    const ROWS: [[f64; 5]; 3] = [
+        [1.0, 0.9862917511318753, -0.16501085312554117, 0.2969055159163158, 1.7746436411126556],
+        [5.0, -0.9423054350437573, -0.3347543384140006, 0.8579042568859491, -2.4149286543704886],
+        [10.0, -0.2750874625761169, -0.961419205099125, 4.175598100951729, -1.1947490545604753],
+    ];
+
+    #[test]
+    fn the_closed_form_has_the_numbers_of_the_reference() {
+        for [t, x, y, vx, vy] in ROWS {
+            let found = closed_form(CARD.equations().as_ref(), t).expect("a swing");
+            let apart = found.q.iter().chain(&found.qd).zip([x, y, vx, vy]);
+            let apart = apart.map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
+            assert!(apart < 2e-13, "{t}: {apart:e}");
+        }
+    }
 }

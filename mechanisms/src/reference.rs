@@ -3,17 +3,12 @@
 use core::f64::consts::{PI, TAU};
 
 use crate::closed_form::{Jet, assert_moves_as, column};
+pub use crate::known::table;
 use mbs_workbench::card::{Card, Preset};
 use mbs_workbench::catalogue::sweep;
 use mbs_workbench::erased::dynamics::direct_dynamics::{Approach, Pair, Simulated, Stabilization, Steps};
 use mbs_workbench::erased::facade::Motion;
 use mbs_workbench::motion::instants;
-
-/// Rows of numbers of a table with `#` comments and one line of column names.
-pub fn table(text: &str) -> Vec<Vec<f64>> {
-    let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
-    lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect()
-}
 
 /// Every entry within `bound` of the expected one, measured by the larger of 1 and the expected magnitude.
 #[track_caller]

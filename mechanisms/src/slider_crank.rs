@@ -20,6 +20,8 @@
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
 use mbs_workbench::card::Card;
+use mbs_workbench::erased::facade::AnyEquations;
+use mbs_workbench::known_motion::{KnownCourse, KnownMotion, KnownState, parameter};
 
 mechanism! {
     /// Slider-crank whose guide passes beside the crank's centre.
@@ -61,7 +63,27 @@ mechanism! {
 }
 
 /// Entry in the list of mechanisms.
-pub const CARD: Card = card!(SliderCrank::default());
+pub const CARD: Card = card!(SliderCrank::default()).known_by(&KNOWN);
+
+/// Positions and velocities in closed form.
+const KNOWN: KnownMotion = KnownMotion {
+    source: "closed form of the textbook",
+    error: 1e-13,
+    course: KnownCourse::Form(closed_form),
+};
+
+fn closed_form(slider_crank: &dyn AnyEquations, t: f64) -> Option<KnownState> {
+    let [r, l, offset, omega] = ["r", "L", "offset", "omega"].map(|name| parameter(slider_crank, name));
+    let (sin, cos) = (omega * t).sin_cos();
+    let slope = (offset - r * sin) / l;
+    let reach = (1.0 - slope * slope).sqrt();
+    if reach.is_nan() {
+        return None;
+    }
+    let rate = -r * omega * cos / (l * reach);
+    let q = vec![omega * t, slope.asin(), r * cos + l * reach];
+    Some(KnownState { t, q, qd: vec![omega, rate, -r * omega * sin - l * slope * rate] })
+}
 
 #[cfg(test)]
 mod tests {

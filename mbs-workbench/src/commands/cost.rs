@@ -10,12 +10,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::assignment::{Assignment, assignment};
 use super::chosen::finite;
 use super::cost_extras::{ask_peers, valleys};
-use super::cost_kernels;
 use super::document::Output;
 use super::of_file::started;
 use super::report_files::{require_writable, write_report};
 use super::target::Target;
 use super::{CommandError, atlas, cost_words, summary};
+use super::{cost_kernels, cost_known};
 use crate::catalogue::Catalogue;
 use crate::cost::advice::two_digits;
 use crate::cost::kinematics::driven_study;
@@ -68,6 +68,9 @@ pub struct Arguments {
     /// Reads points of other sines
     #[arg(long, hide = true, value_name = "DIR")]
     points_from: Option<PathBuf>,
+    /// Reads a closed form or published digits
+    #[arg(long, hide = true, value_name = "FILE")]
+    known: Option<PathBuf>,
     /// Compare with other programs, which pip installs: SciPy, CVODES, IDAS on CasADi's equations; MuJoCo, Exudyn, Drake, Pinocchio
     #[arg(long)]
     peers: bool,
@@ -96,6 +99,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let forge = Forge { release: true, ..caller };
     let mut words: Vec<_> = std::env::args_os().skip(1).collect();
     let mut is_driven = is_file(arguments.name());
+    let mut known = None;
     let (blueprint, second) = if is_file(arguments.name()) {
         methods(&arguments.methods)?;
         (Blueprint::study_of_text(&Study::COST, &TextFile::read(arguments.name())?)?, None)
@@ -116,6 +120,8 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         watched(instance.equations(), &arguments.watch)?;
         methods(&arguments.methods)?;
         let equations = instance.equations();
+        let until = arguments.until.map_or_else(|| target.duration(equations), Ok)?;
+        known = cost_known::written(&target, equations, !arguments.parameters.is_empty(), until)?;
         let own = type_of(equations);
         let functions = equations.functions();
         let of = |study: &Study| {
@@ -132,6 +138,9 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     if arguments.kernels && is_driven {
         let directory = cost_kernels::compared(&forge, &blueprint, second.as_ref(), &words)?;
         words.extend(["--points-from".into(), directory.into_os_string()]);
+    }
+    if let Some(path) = known {
+        words.extend(["--known".into(), path.into_os_string()]);
     }
     match (studied(&forge, &blueprint, words.clone()), second) {
         (Err(CommandError::Failed(reason)), Some(second)) if reason.contains("Function<") => {
@@ -281,15 +290,13 @@ pub fn study(
         reason
     };
     let failed = |found: NoReference| {
-        CommandError::Failed(without(format!(
-            "{}: no true solution to compare with: {}",
-            target.name(),
-            found.reason
-        )))
+        CommandError::Failed(without(format!("{}: no comparison: {}", target.name(), found.reason)))
     };
     let mut facts = Vec::new();
     let mut fact = |name: &str, value: String| facts.push([name.to_string(), value]);
     let mut peers = Vec::new();
+    let known = arguments.known.as_deref().map(cost_known::read).transpose()?;
+    let third_leg;
     let compared = make(&values);
     let doubles = match &compared {
         Comparable::Still | Comparable::Sticks(_) => Vec::new(),
@@ -338,6 +345,7 @@ pub fn study(
                 "width of rates",
                 format!("{}, by the rows against differences of positions", two_digits(found.width)),
             );
+            third_leg = known.map(|known| cost_known::of_driven(&known, &found));
             (found.points, found.width_of_positions, "acceleration")
         }
         Comparable::Moved(mut mechanism) => {
@@ -360,8 +368,14 @@ pub fn study(
                 };
                 fact(&format!("{} reference", leg.name()), words);
             }
-            let words = found.width.map_or_else(|| "not known: one reference alone".to_string(), two_digits);
+            let alone = found.references.iter().any(|(_, reference)| reference.stuck.is_some());
+            let how = if alone { ", by coarser steps: one reference alone" } else { "" };
+            let words = found.width.map_or_else(
+                || "not known: one reference alone".to_string(),
+                |width| format!("{}{how}", two_digits(width)),
+            );
             fact("width of the reference", words);
+            third_leg = known.map(|known| cost_known::of_moved(&known, &found));
             if arguments.peers {
                 peers = ask_peers(&found, &target, equations, arguments, &mut progress);
                 fact(
@@ -372,6 +386,9 @@ pub fn study(
             (found.points, found.width, "reaction")
         }
     };
+    if let Some(leg) = &third_leg {
+        fact("third leg", leg.words());
+    }
     let valleys = valleys(equations, laws, &mut progress);
     bar.finish_and_clear();
     fact("instants", "each run is compared at the ends of its steps that are instants of the reference, at most 480 (motion from forces) or 1440".to_string());
@@ -415,6 +432,9 @@ pub fn study(
         writeln!(out, "{kind:<8} {}", path.display())?;
     }
     out.flush()?;
+    if let Some(contradiction) = third_leg.and_then(|leg| leg.contradiction()) {
+        return Err(CommandError::Failed(contradiction));
+    }
     match result.wrong().count() {
         0 => Ok(ExitCode::SUCCESS),
         wrong => Err(CommandError::Failed(format!(

@@ -12,6 +12,7 @@ pub mod compare;
 pub mod cost;
 mod cost_extras;
 mod cost_kernels;
+mod cost_known;
 mod cost_words;
 pub mod document;
 pub mod dof;

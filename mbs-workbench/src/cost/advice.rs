@@ -19,7 +19,8 @@ pub fn time_text(time: f64, is_step: bool) -> String {
     let digits = |value: f64| match value {
         value if value >= 100.0 => format!("{value:.0}"),
         value if value >= 10.0 => format!("{value:.1}"),
-        value => format!("{value:.2}"),
+        value if value >= 0.1 => format!("{value:.2}"),
+        value => two_digits(value),
     };
     if is_step {
         format!("{} ns a step", digits(time))
@@ -33,7 +34,7 @@ pub fn time_text(time: f64, is_step: bool) -> String {
 /// The setting to take for an error of `asked`, and the price of the next digit.
 pub fn sentence(points: &[Point], asked: f64) -> String {
     let Some(chosen) = cheapest(points, asked) else {
-        let best = points.iter().filter_map(Point::error).fold(f64::INFINITY, f64::min);
+        let best = points.iter().filter_map(Point::bound).fold(f64::INFINITY, f64::min);
         return match best.is_finite() {
             true => format!(
                 "{}: no setting reaches it; the best has an error of {}.",
@@ -68,7 +69,7 @@ pub fn sentence(points: &[Point], asked: f64) -> String {
         }
     }
     let single = points.iter().filter(|point| point.setting.numbers() == Numbers::Single);
-    let floor = single.filter_map(Point::error).fold(f64::INFINITY, f64::min);
+    let floor = single.filter_map(Point::bound).fold(f64::INFINITY, f64::min);
     if floor.is_finite() {
         text += &format!(" f32 stops at {}.", two_digits(floor));
     }
@@ -145,5 +146,18 @@ fn motion(
         )
         .replacen("let mut run = Sim", "let run = Sim", 1),
         Resolution::Steps(steps) => format!("{run}run.step_to({until:?}, {steps})?;\n"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_digits_at_any_size() {
+        assert_eq!(time_text(5.83e-7, false), "5.8e-7 µs a simulated second");
+        assert_eq!(time_text(0.5, false), "0.50 µs a simulated second");
+        assert_eq!(time_text(23456.0, false), "23.5 ms a simulated second");
+        assert_eq!(time_text(123.4, true), "123 ns a step");
     }
 }

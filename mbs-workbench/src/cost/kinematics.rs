@@ -3,7 +3,7 @@
 use mbs_runtime::Scalar;
 
 use crate::cost::moved::{NoReference, WIDTHS};
-use crate::cost::points::{Errors, Expected, Outcome, Point, Verdict};
+use crate::cost::points::{Errors, Expected, Outcome, Point, Verdict, WRONG, judge_by_order};
 use crate::cost::reference::linear::{Matrix, worse};
 use crate::double_double::DoubleDouble as D;
 use crate::erased::costs::DrivenCosts;
@@ -44,6 +44,10 @@ pub struct DrivenStudy {
     pub width: f64,
     /// Width of positions, where functions of the caller have the digits of `f64`; none of positions in all digits.
     pub width_of_positions: Option<f64>,
+    /// Time (s), q and q̇ (N each) of the reference at each instant.
+    pub motion: Vec<(f64, [Vec<D>; 2])>,
+    /// Reference metric of the coordinates: N.
+    pub scales: Vec<f64>,
 }
 
 /// Exact positions and rates at an instant.
@@ -220,6 +224,7 @@ pub fn driven_study(
                 |steps| Setting::Kinematics { numbers: *numbers, lanes: *lanes, closing, steps, kernel };
             progress(&setting(0).curve(), share);
             let mut last: Option<(f64, u32)> = None;
+            let first = points.len();
             for steps in STEPS {
                 let stride = PARTS / steps;
                 let own: Vec<f64> = times.iter().copied().step_by(stride as usize).collect();
@@ -240,11 +245,13 @@ pub fn driven_study(
                         last = None;
                     }
                     Ok(effort) => {
-                        let Some(errors) = judge(&seen) else { continue };
+                        let Some(mut errors) = judge(&seen) else { continue };
                         let expected = expected(closing, last, steps);
                         let before = last.map_or(0.0, |(error, _)| error);
                         let verdict =
                             verdict(*numbers, closing, &errors, (before, expected), width_of_positions);
+                        errors.width =
+                            width_of_positions.filter(|_| verdict == Verdict::Hollow).unwrap_or(0.0);
                         let expected = expected.map(|error| Expected { error, is_trusted: true });
                         let outcome = Outcome::Done { errors, expected, verdict };
                         let too_long = effort.elapsed.as_secs_f64() > longest;
@@ -262,6 +269,13 @@ pub fn driven_study(
                     }
                 }
             }
+            if let Some(order) = closing.order() {
+                let steps = |point: &Point| match point.setting {
+                    Setting::Kinematics { steps, .. } => f64::from(steps),
+                    Setting::Motion { .. } => f64::NAN,
+                };
+                judge_by_order(&mut points[first..], order, rounding(*numbers), steps, |_| false);
+            }
         }
     }
     for round in 1..RUNS {
@@ -271,7 +285,8 @@ pub fn driven_study(
     for point in &mut points {
         point.time = point.effort.elapsed.as_secs_f64() * 1e9 / point.effort.steps.max(1) as f64;
     }
-    Ok(DrivenStudy { points, width, width_of_positions })
+    let motion = times.into_iter().zip(reference).map(|(t, exact)| (t, [exact.q, exact.qd])).collect();
+    Ok(DrivenStudy { points, width, width_of_positions, motion, scales })
 }
 
 /// Errors that rounding alone explains.
@@ -300,7 +315,7 @@ fn verdict(
     let is_wrong = match (closing, expected) {
         (Closing::Closed, _) => errors.judged > rounding(numbers),
         (Closing::Evaluations(_), Some(expected)) => {
-            errors.judged > (10.0 * expected).max(before).max(rounding(numbers))
+            errors.judged > (WRONG * expected).max(before).max(rounding(numbers))
         }
         (Closing::Evaluations(_), None) => false,
     };

@@ -16,3 +16,4 @@ pub mod result;
 pub mod splines;
 #[cfg(test)]
 mod tests;
+pub mod third_leg;

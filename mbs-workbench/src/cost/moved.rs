@@ -5,10 +5,10 @@ use std::time::Duration;
 use mbs_runtime::dynamics::ErrorEstimate;
 
 use crate::cost::errors::{Sizes, apart, between, errors};
-use crate::cost::points::{Errors, Expected, Outcome, Point, Verdict};
+use crate::cost::points::{COARSEST, Errors, Expected, Outcome, Point, Verdict, WRONG, judge_by_order};
 use crate::cost::reference::linear::worse;
 use crate::cost::reference::motion::Stuck;
-use crate::cost::reference::{Leg, Reference, reference};
+use crate::cost::reference::{Leg, Reference, Shot, reference};
 use crate::double_double::DoubleDouble as D;
 use crate::erased::costs::MovedCosts;
 use crate::erased::timed_runs::{Effort, Seen};
@@ -23,9 +23,6 @@ pub const WIDTHS: f64 = 100.0;
 /// Steps over those of the coarser run from which on both tell the error.
 const FINER: f64 = 1.1;
 
-/// Error over the expected one that makes a point wrong.
-const WRONG: f64 = 10.0;
-
 /// A run may take so many times as long as the finest of the first curve.
 const DEAREST: f64 = 60.0;
 
@@ -34,6 +31,12 @@ const CHEAP: f64 = 2e-3;
 
 /// Runs of which the shortest time counts.
 const RUNS: u32 = 5;
+
+/// Width of a reference alone over its difference from one of coarser steps, whose tolerance is 1e3 times as large at least.
+const ALONE: f64 = 1e-2;
+
+/// Differences of the references up to which they agree.
+const AGREED: f64 = 1e-6;
 
 /// Least tolerance of references where a function of the caller has the digits of `f64`.
 const LEAST_OF_DOUBLES: f64 = 1e-13;
@@ -60,7 +63,8 @@ pub struct MovedStudy {
     pub points: Vec<Point>,
     /// References by kind.
     pub references: Vec<(Leg, Reference)>,
-    /// Difference of the references in the judged quantity; none of one alone.
+    /// Difference of the references in the judged quantity. Of one alone a hundredth of its difference from one of coarser steps; none
+    /// where there is no such one.
     pub width: Option<f64>,
     /// Instants (s), at equal distances.
     pub times: Vec<f64>,
@@ -107,10 +111,12 @@ pub fn moved_study(
     let double = mechanism.runs.iter().find(|(numbers, _)| *numbers == Numbers::Double);
     let double = double.ok_or_else(|| no_reference("there are no runs in f64".to_string()))?;
     let [q, qd] = double.1.start(0.0).map_err(|failure| no_reference(failure.to_string()))?;
-    let mut references = Vec::new();
+    let (mut references, mut coarser) = (Vec::new(), Vec::new());
     for leg in [Leg::Extrapolated, Leg::Collocated] {
         progress(&format!("{} reference", leg.name()), 0.0);
-        references.push((leg, best(mechanism, leg, (&q, &qd), &times, extent)));
+        let (fine, coarse) = best(mechanism, leg, (&q, &qd), &times, extent);
+        coarser.extend(coarse.map(|coarse| (leg, coarse)));
+        references.push((leg, fine));
     }
     let whole = |reference: &Reference| reference.stuck.is_none();
     if !references.iter().any(|(_, reference)| whole(reference)) {
@@ -130,11 +136,30 @@ pub fn moved_study(
     let any = any.ok_or_else(|| no_reference("no reference is whole".to_string()))?;
     let double = mechanism.runs.iter().find(|(numbers, _)| *numbers == Numbers::Double);
     let unique = |t: f64, q: &[f64]| double.map_or_else(Vec::new, |(_, runs)| runs.unique(t, q));
+    let is_still = any.shots.iter().all(|shot| shot.at.qd.iter().all(|qd| qd.high == 0.0));
+    if is_still {
+        return Err(no_reference("nothing moves from this start".to_string()));
+    }
+    if !extent.watched.is_empty() && extent.watched.iter().all(|k| is_constant(any, *k)) {
+        return Err(no_reference("the watched outputs keep one value, which every run has".to_string()));
+    }
     let sizes = Sizes::of(any, metric, &unique);
-    let width = match (of(Leg::Extrapolated), of(Leg::Collocated)) {
-        (Some((_, a)), Some((_, b))) => Some(apart_legs(a, b, &sizes, &extent.watched)),
-        _ => None,
+    let pair = match (of(Leg::Extrapolated), of(Leg::Collocated)) {
+        (Some((_, a)), Some((_, b))) => Some(([a, b], 1.0)),
+        (Some((leg, fine)), None) | (None, Some((leg, fine))) => {
+            coarser.iter().find(|(own, _)| own == leg).map(|(_, coarse)| ([fine, coarse], ALONE))
+        }
+        (None, None) => None,
     };
+    let apart = pair.map(|([a, b], share)| {
+        apart_legs(a, b, &sizes, &extent.watched).map(|apart| share * apart).collect::<Vec<_>>()
+    });
+    let width = apart.as_ref().map(|apart| apart.iter().copied().fold(0.0, worse));
+    if let Some(apart) = apart.filter(|_| width.is_some_and(|width| width > COARSEST || width.is_nan())) {
+        let agreed = apart.iter().take_while(|apart| **apart <= AGREED).count();
+        let agreed = times.get(agreed.saturating_sub(1)).copied().unwrap_or(0.0);
+        return Err(no_reference(differing(agreed, &extent.watched)));
+    }
     let judge = |method: MotionMethod| {
         let other = if method.is_implicit() { Leg::Extrapolated } else { Leg::Collocated };
         of(other).map_or(any, |(_, reference)| reference)
@@ -176,6 +201,11 @@ impl MovedStudy {
         whole(Leg::Collocated).or_else(|| whole(Leg::Extrapolated)).map(|(_, reference)| reference)
     }
 
+    /// Reference metric of the coordinates: N.
+    pub fn scales(&self) -> &[f64] {
+        &self.sizes.scales
+    }
+
     /// Errors of coordinates and velocities at the instants. What is not given is NaN, and all of it where instants are missing.
     pub fn errors_of(&self, q: &[Vec<f64>], qd: Option<&[Vec<f64>]>) -> Errors {
         let none = f64::NAN;
@@ -200,29 +230,56 @@ impl MovedStudy {
     }
 }
 
-/// The reference of the finest steps that are in time.
+/// `true` where the `k`th output has one value at all instants.
+fn is_constant(reference: &Reference, k: usize) -> bool {
+    let mut values = reference.shots.iter().map(|shot| shot.observed.outputs[k]);
+    let first = values.next();
+    values.all(|value| Some(value) == first)
+}
+
+/// Reason of references that differ too much, which agree until `agreed` (s).
+fn differing(agreed: f64, watched: &[usize]) -> String {
+    let rounding = match watched {
+        [] => "",
+        _ => ", or a watched output is 0 but for rounding",
+    };
+    match agreed {
+        0.0 => format!("the references differ from the start on: the motion is not unique{rounding}"),
+        agreed => format!(
+            "the references differ; they agree to {AGREED:.0e} until t = {agreed:.4} s, where `--until {agreed:.4}` ends the motion{rounding}"
+        ),
+    }
+}
+
+/// The reference of the finest steps that are in time, and that of coarse ones beside it.
 fn best(
     mechanism: &mut MovedCosts,
     leg: Leg,
     start: (&[f64], &[f64]),
     times: &[f64],
     extent: &Extent,
-) -> Reference {
+) -> (Reference, Option<Reference>) {
     let budget = Duration::from_secs_f64(extent.reference);
     let exact = mechanism.exact.as_mut();
     // A coarse one first tells if the fine one will be in time.
     let coarse = reference(exact, leg, start, times, 1e-10, budget);
     if coarse.stuck.is_some() {
-        return coarse;
+        return (coarse, None);
     }
     let tolerance =
         if mechanism.doubles.is_empty() { extent.tolerance } else { extent.tolerance.max(LEAST_OF_DOUBLES) };
     let fine = reference(exact, leg, start, times, tolerance, budget.mul_f64(2.0));
-    if fine.stuck.is_none() { fine } else { coarse }
+    if fine.stuck.is_none() { (fine, Some(coarse)) } else { (coarse, None) }
 }
 
-fn apart_legs(a: &Reference, b: &Reference, sizes: &Sizes, watched: &[usize]) -> f64 {
-    let difference = |(a, b): (&crate::cost::reference::Shot, &crate::cost::reference::Shot)| {
+/// Differences of two references at their instants.
+fn apart_legs<'a>(
+    a: &'a Reference,
+    b: &'a Reference,
+    sizes: &'a Sizes,
+    watched: &'a [usize],
+) -> impl Iterator<Item = f64> {
+    let difference = move |(a, b): (&Shot, &Shot)| {
         if watched.is_empty() {
             let pairs = a.at.q.iter().zip(&b.at.q).zip(&sizes.scales);
             return pairs.map(|((a, b), scale)| (*a - *b).high.abs() / scale).fold(0.0, worse);
@@ -230,7 +287,7 @@ fn apart_legs(a: &Reference, b: &Reference, sizes: &Sizes, watched: &[usize]) ->
         let of = |k: &usize| (a.observed.outputs[*k] - b.observed.outputs[*k]).high.abs() / sizes.outputs[*k];
         watched.iter().map(of).fold(0.0, worse)
     };
-    a.shots.iter().zip(&b.shots).map(difference).fold(0.0, worse)
+    a.shots.iter().zip(&b.shots).map(difference)
 }
 
 fn curve(
@@ -271,9 +328,10 @@ fn curve(
         };
         // What a run makes of a contact that it misses shows in its times alone.
         let contacts = runs.contacts(method, resolution, times).unwrap_or_default();
-        let Some(errors) = errors(&seen, &contacts, reference, sizes, &extent.watched) else { continue };
+        let Some(mut errors) = errors(&seen, &contacts, reference, sizes, &extent.watched) else { continue };
         let expected = coarser.expected((seen, effort.steps), method.is_adaptive(), sizes, &extent.watched);
         let verdict = verdict((numbers, method), effort.unfinished, errors.judged, expected, width);
+        errors.width = width.filter(|_| verdict == Verdict::Hollow).unwrap_or(0.0);
         let before = points.last().and_then(|point| match point.outcome {
             Outcome::Done { errors, .. } => Some(errors.judged),
             Outcome::Refused(_) => None,
@@ -292,7 +350,20 @@ fn curve(
             break;
         }
     }
+    if let Some(order) = method.order() {
+        let steps = |point: &Point| match point.setting {
+            Setting::Motion { resolution: Resolution::Steps(steps), .. } => f64::from(steps),
+            _ => f64::NAN,
+        };
+        let is_warned = |point: &Point| changes_the_problem(method) || point.effort.unfinished > 0;
+        judge_by_order(&mut points, order, rounding(numbers), steps, is_warned);
+    }
     points
+}
+
+/// `true` for a penalty: its error stays whatever the steps.
+fn changes_the_problem(method: MotionMethod) -> bool {
+    matches!(method, MotionMethod::Explicit(FormulationName::Penalty, _))
 }
 
 /// Coarser runs of a curve, each with its steps, the last one last.
@@ -350,13 +421,12 @@ fn verdict(
     expected: Option<Expected>,
     width: Option<f64>,
 ) -> Verdict {
-    // A penalty changes the problem: its error stays whatever the steps.
-    let is_other = matches!(method, MotionMethod::Explicit(FormulationName::Penalty, _));
     let width = width.unwrap_or(0.0);
     match expected {
         _ if error <= WIDTHS * width => Verdict::Hollow,
+        _ if error.is_nan() => Verdict::Wrong,
         Some(expected) if error > (WRONG * expected.error).max(rounding(numbers)) => {
-            if is_other || unfinished > 0 || !expected.is_trusted {
+            if changes_the_problem(method) || unfinished > 0 || !expected.is_trusted {
                 Verdict::Untrusted
             } else {
                 Verdict::Wrong

@@ -1,7 +1,7 @@
 //! Errors of the settings of the front for perturbed parameters: a point that is small by chance is no advice.
 
 use crate::cost::moved::Extent;
-use crate::cost::points::{Point, front};
+use crate::cost::points::{Point, advised_front};
 use crate::cost::reference::linear::worse;
 use crate::erased::costs::{Comparable, MovedCosts};
 use crate::erased::timed_runs::Seen;
@@ -38,7 +38,7 @@ pub fn perturb(
         return;
     }
     let times: Vec<f64> = (0..=PARTS).map(|k| until * f64::from(k) / f64::from(PARTS)).collect();
-    let chosen: Vec<usize> = front(points).into_iter().filter(|index| points[*index].is_advised()).collect();
+    let chosen = advised_front(points);
     let mut largest = vec![0.0_f64; chosen.len()];
     let mut started = 0;
     for set in 0..SETS {

@@ -1,13 +1,15 @@
 //! Points of the study: a setting with its true error, its time and its counts.
 
 use crate::erased::timed_runs::Effort;
-use crate::setting::{FormulationName, Kernel, MotionMethod, Setting};
+use crate::setting::{FormulationName, Kernel, MotionMethod, Numbers, Setting};
 
 /// Errors of a run at its instants: the largest counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
     /// Of the quantity that is judged: coordinates in the reference metric, or the watched outputs.
     pub judged: f64,
+    /// Width of the reference where that error is below 100 widths, and known with it alone; else 0.
+    pub width: f64,
     /// Its median over the instants.
     pub median: f64,
     /// Of velocities, over the largest of the motion.
@@ -30,6 +32,7 @@ impl Errors {
         let none = f64::NAN;
         Errors {
             judged: none,
+            width: 0.0,
             median: none,
             rate: none,
             second: none,
@@ -55,7 +58,7 @@ pub enum Verdict {
     Wrong,
 }
 
-/// Error that coarser points of a curve let expect.
+/// Error that other points of a curve let expect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// The error.
@@ -71,7 +74,7 @@ pub enum Outcome {
     Done {
         /// True errors.
         errors: Errors,
-        /// Error that coarser points of its curve let expect; none of the coarsest.
+        /// Error that other points of its curve let expect; none where there are none.
         expected: Option<Expected>,
         /// Judgement.
         verdict: Verdict,
@@ -120,6 +123,14 @@ impl Point {
         self.is_single() && !is_unstabilized
     }
 
+    /// The largest error that it may have, where it is trusted: with the width of the reference.
+    pub fn bound(&self) -> Option<f64> {
+        match &self.outcome {
+            Outcome::Done { errors, .. } => self.error().map(|error| error + errors.width),
+            Outcome::Refused(_) => None,
+        }
+    }
+
     /// Its error, where it is trusted.
     pub fn error(&self) -> Option<f64> {
         match &self.outcome {
@@ -129,18 +140,63 @@ impl Point {
     }
 }
 
+/// Error over the expected one that makes a point wrong.
+pub const WRONG: f64 = 10.0;
+
+/// Judges the points of a curve of equal steps, from coarse to fine, by what the order of the method predicts from the next finer one.
+/// More than ten times that, and more than `rounding`, is wrong; or untrusted where there is a warning of the point (`is_warned`).
+pub fn judge_by_order(
+    points: &mut [Point],
+    order: i32,
+    rounding: f64,
+    steps: impl Fn(&Point) -> f64,
+    is_warned: impl Fn(&Point) -> bool,
+) {
+    for index in 1..points.len() {
+        let (before, rest) = points.split_at_mut(index);
+        let ([.., point], [finer, ..]) = (before, rest) else { continue };
+        let Outcome::Done { errors: finest, .. } = finer.outcome else { continue };
+        let ratio = steps(finer) / steps(point);
+        let doubted = is_warned(point);
+        let Outcome::Done { errors, expected, verdict: verdict @ Verdict::Right } = &mut point.outcome else {
+            continue;
+        };
+        let error = finest.judged * ratio.powi(order);
+        *expected = Some(Expected { error, is_trusted: true });
+        if errors.judged > (WRONG * error).max(rounding) || errors.judged.is_nan() {
+            *verdict = if doubted { Verdict::Untrusted } else { Verdict::Wrong };
+        }
+    }
+}
+
 /// Share of the best error so far that a dearer point must stay below to be on the front: what differs by less is the same.
 const GAIN: f64 = 0.7;
 
 /// Errors above it are no accuracy.
-const COARSEST: f64 = 0.1;
+pub const COARSEST: f64 = 0.1;
 
 /// Indices of the points of one mechanism that no other one beats in error and time, from coarse to fine.
 pub fn front(points: &[Point]) -> Vec<usize> {
+    front_of(points, Point::is_single)
+}
+
+/// Indices of the points to choose from, of which each may be the cheapest for some error: the front of those that are advised, and that of
+/// `f64` alone, for no error below 100 ε of `f32` is advised with it.
+pub fn advised_front(points: &[Point]) -> Vec<usize> {
+    let is_double = |point: &Point| point.is_advised() && point.setting.numbers() == Numbers::Double;
+    let mut front = front_of(points, Point::is_advised);
+    front.extend(front_of(points, is_double));
+    front.sort_unstable();
+    front.dedup();
+    front
+}
+
+/// The front of the points that are `chosen`.
+fn front_of(points: &[Point], chosen: impl Fn(&Point) -> bool) -> Vec<usize> {
     let mut known: Vec<(usize, f64, f64)> = points
         .iter()
         .enumerate()
-        .filter(|(_, point)| point.is_single())
+        .filter(|(_, point)| chosen(point))
         .filter_map(|(index, point)| Some((index, point.error()?, point.time)))
         .filter(|(_, error, time)| *error <= COARSEST && time.is_finite())
         .collect();
@@ -183,7 +239,7 @@ pub fn cheapest_with(points: &[Point], asked: f64, kernel: Kernel) -> Option<&Po
 /// curve stand for them: where finer steps make it worse, rounding decides, and the point is small by chance.
 fn reaching(points: &[Point], asked: f64) -> impl Iterator<Item = &Point> {
     let is_below =
-        move |point: &Point, margin: f64| point.error().is_some_and(|error| margin * error <= asked);
+        move |point: &Point, margin: f64| point.bound().is_some_and(|error| margin * error <= asked);
     let has_runs = points.iter().any(|point| point.perturbed.is_some());
     points.iter().enumerate().filter_map(move |(index, point)| {
         if asked < ROUNDINGS * point.setting.numbers().epsilon() {
@@ -203,7 +259,7 @@ fn reaching(points: &[Point], asked: f64) -> impl Iterator<Item = &Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::setting::{Closing, Numbers};
+    use crate::setting::Closing;
 
     fn point(error: f64, time: f64, verdict: Verdict) -> Point {
         let setting = Setting::Kinematics {
@@ -229,6 +285,51 @@ mod tests {
         ];
         assert_eq!(front(&points), [0, 2, 4]);
         assert!(cheapest(&points, 1e-12).is_none());
+    }
+
+    #[test]
+    fn a_point_of_f32_hides_none_of_f64_from_the_choice() {
+        let mut points = [point(0.0, 1.0, Verdict::Right), point(1e-9, 2.0, Verdict::Right)];
+        let Setting::Kinematics { numbers, .. } = &mut points[0].setting else { panic!("of kinematics") };
+        *numbers = Numbers::Single;
+        assert_eq!((front(&points), advised_front(&points)), (vec![0], vec![0, 1]));
+        points.iter_mut().for_each(|point| point.perturbed = point.error());
+        assert_eq!(cheapest(&points, 1e-6).map(|point| point.time), Some(2.0));
+    }
+
+    #[test]
+    fn the_width_of_the_reference_counts_in_the_advice() {
+        let mut points = [point(1e-9, 1.0, Verdict::Hollow), point(2e-8, 2.0, Verdict::Right)];
+        assert_eq!(cheapest(&points, 1e-7).map(|point| point.time), Some(1.0));
+        let Outcome::Done { errors, .. } = &mut points[0].outcome else { panic!("it was done") };
+        errors.width = 1e-6;
+        assert_eq!(cheapest(&points, 1e-7).map(|point| point.time), Some(2.0));
+    }
+
+    #[test]
+    fn a_point_is_wrong_above_ten_times_what_its_order_predicts_from_the_next_finer_one() {
+        let judged = |errors: &[f64], is_warned: bool| {
+            let mut points: Vec<Point> =
+                errors.iter().map(|error| point(*error, 1.0, Verdict::Right)).collect();
+            for (index, point) in points.iter_mut().enumerate() {
+                point.effort.steps = 10 << index;
+            }
+            judge_by_order(&mut points, 4, 1e-10, |point| point.effort.steps as f64, |_| is_warned);
+            let verdict = |point: Point| match point.outcome {
+                Outcome::Done { verdict, .. } => verdict,
+                Outcome::Refused(_) => panic!("it was done"),
+            };
+            points.into_iter().map(verdict).collect::<Vec<_>>()
+        };
+        use Verdict::{Right, Untrusted, Wrong};
+        // Order 4, a lower order, and rounding.
+        assert_eq!(judged(&[1.6e-3, 1e-4, 6e-6], false), [Right; 3]);
+        assert_eq!(judged(&[1e-3, 5e-4, 2.5e-4], false), [Right; 3]);
+        assert_eq!(judged(&[9e-11, 1e-16], false), [Right; 2]);
+        // 161 times the finer one; also a number that is none.
+        assert_eq!(judged(&[1.61e-2, 1e-4, 6e-6], false), [Wrong, Right, Right]);
+        assert_eq!(judged(&[f64::NAN, 1e-4], false), [Wrong, Right]);
+        assert_eq!(judged(&[1.61e-2, 1e-4], true), [Untrusted, Right]);
     }
 
     #[test]

@@ -98,6 +98,9 @@ struct PagePoint {
     refused: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<f64>,
+    /// Width of the reference, where the error is known with it alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    width: Option<f64>,
     median: f64,
     rate: f64,
     second: f64,
@@ -130,6 +133,7 @@ impl PagePoint {
             label,
             refused: None,
             error: Some(errors.judged).filter(|error| error.is_finite()),
+            width: Some(errors.width).filter(|width| *width > 0.0),
             median: errors.median,
             rate: errors.rate,
             second: errors.second,

@@ -13,7 +13,9 @@ use crate::erased::dynamics::direct_dynamics::{Pair, Rule};
 use crate::erased::dynamics::integrators::Integrators;
 use crate::erased::exact::{Exact, ExactEquations, Moving, Observed, Rows, Sizes, Terms};
 use crate::erased::timed_runs::Runs;
-use crate::setting::{Closing, FormulationName, IntegratorName, Kernel, MotionMethod, Numbers, Setting};
+use crate::setting::{
+    Closing, FormulationName, ImplicitName, IntegratorName, Kernel, MotionMethod, Numbers, Setting,
+};
 
 mbs_runtime::mechanism! {
     /// A01 of the IFToMM benchmark: a point mass on a rod, in Cartesian coordinates.
@@ -24,6 +26,7 @@ mbs_runtime::mechanism! {
     constraint rod { dot(p, p) == 1 [m^2]; }
     start p = [-1, 0] rate [0, 0];
     out height: m = p.1;
+    out pivot: m = 0;
 }
 
 mbs_runtime::mechanism! {
@@ -242,6 +245,20 @@ fn positions_of_drives_are_known_in_all_digits() {
     assert!(predicted[0] > 100.0 * predicted[predicted.len() - 1], "{predicted:?}");
 }
 
+#[test]
+fn an_output_that_keeps_one_value_is_no_measure_of_an_error() {
+    let of = |watched| {
+        let own = Extent { tolerance: 1e-10, watched, ..extent(Vec::new()) };
+        let mut mechanism = moved(Pendulum::default());
+        mechanism.runs.retain(|(numbers, _)| *numbers == Numbers::Double);
+        let own = Extent { methods: vec![MotionMethod::Implicit(ImplicitName::AugmentedLagrangian)], ..own };
+        moved_study(&mut mechanism, 0.1, &own, &mut |_, _| ()).map(|study| study.points.len())
+    };
+    let reason = of(vec![1]).expect_err("the pivot stands").reason;
+    assert!(reason.contains("keep one value"), "{reason}");
+    assert!(of(vec![0, 1]).is_ok_and(|points| points > 0));
+}
+
 /// Runge and Kutta's method with a fault of 1e-6 in one weight.
 #[derive(Clone, Copy)]
 struct FaultyWeight;
@@ -307,10 +324,10 @@ fn a_fault_in_one_weight_lifts_its_curve() {
 fn contacts_of_a_run_are_compared_with_those_of_the_reference() {
     let method = MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8);
     let mut mechanism = moved(Ball::default());
-    let own = extent(vec![
-        method,
-        MotionMethod::Explicit(FormulationName::Projection, IntegratorName::RungeKutta4),
-    ]);
+    let methods =
+        vec![method, MotionMethod::Explicit(FormulationName::Projection, IntegratorName::RungeKutta4)];
+    // Long enough for fine steps on a busy machine.
+    let own = Extent { longest: 0.1, ..extent(methods) };
     let study = moved_study(&mut mechanism, 0.3, &own, &mut |_, _| ()).expect("references");
     let of = |point: &super::points::Point| match point.outcome {
         Outcome::Done { errors, .. } => errors,

@@ -80,6 +80,7 @@ const HOUSES: &[House] = &[
             "study",
             "layout",
             "text_file",
+            "known_motion",
             "card",
             "catalogue",
             "forge",

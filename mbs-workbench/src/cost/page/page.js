@@ -35,11 +35,12 @@ showFront();
 /* The cheapest trusted point that reaches the error, for perturbed parameters too. Where these were not run: with a margin of 2, as the next
    finer one of its curve does. */
 const hasRuns = trusted.some(({ point }) => point.perturbed !== undefined);
+const bound = (point) => point.error + (point.width ?? 0);
 const reaches = ({ curve, point, p }, error) => {
   if (!curve.advised || error < 100 * curve.epsilon) return false;
-  if (hasRuns) return point.error <= error && point.perturbed <= error;
+  if (hasRuns) return bound(point) <= error && point.perturbed <= error;
   const finer = curve.points[p + 1];
-  return 2 * point.error <= error && (finer?.error === undefined || 2 * finer.error <= error);
+  return 2 * bound(point) <= error && (finer?.error === undefined || 2 * bound(finer) <= error);
 };
 const cheapest = (error) => trusted.filter((entry) => reaches(entry, error)).sort((a, b) => a.point.time - b.point.time)[0];
 
