@@ -3,6 +3,7 @@
 
 use core::fmt::Debug;
 
+mod door;
 mod drives;
 mod elements;
 mod plain;
