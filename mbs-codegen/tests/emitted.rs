@@ -74,16 +74,49 @@ contact table { gap: y, stiffness: 1e6 [N/m] }
 contact nose { gap: distance([x, y], cam), stiffness: 1e6 [N/m], damping: 1 [s/m] }
 ";
 
+/// Body of Q.
+fn force_of(text: &str) -> String {
+    let found = laid_out(text);
+    let force = found.split("fn force(").nth(1).expect("forces");
+    force.split("fn force_q(").next().expect("a body").to_string()
+}
+
 #[test]
 fn a_long_block_of_a_contact_ends_at_an_open_gap_and_a_short_one_has_no_test() {
-    let found = laid_out(CONTACTS);
-    let force = found.split("fn force(").nth(1).expect("forces").split("fn force_q(").next().expect("a body");
+    let force = force_of(CONTACTS);
     let blocks: Vec<&str> = force.split("if __p.1[").skip(1).collect();
-    let [table, nose] = blocks[..] else { panic!("two blocks: {force}") };
-    assert!(!table.contains("T::all("), "{table}");
-    let (before, after) =
-        nose.split_once("if !T::all(T::less(T::constant(0.0f64), ").expect("a test of the gap");
-    let gap = after.split_once(')').expect("the gap").0;
-    assert!(before.contains(&format!("let {gap} =")) && before.contains("::jet::<"), "{before}");
-    assert!(!after.contains("::jet::<") && after.contains("__sum[0] ="), "{after}");
+    let [gap_of_nose, rest] = blocks[..] else { panic!("two blocks: {force}") };
+    let (table, nose) =
+        rest.split_once("if !T::all(T::less(T::constant(0.0f64), ").expect("a test of the gap");
+    assert!(gap_of_nose.starts_with("1]") && rest.starts_with("0]"), "gaps come before forces: {force}");
+    assert!(table.contains("__sum[1] =") && !table.contains("::jet::<"), "{table}");
+    assert!(table.contains("] = __gap1;"), "{table}");
+    let gap = nose.split_once(')').expect("the gap").0;
+    assert!(
+        gap_of_nose.contains(&format!("let {gap} =")) && gap_of_nose.contains("::jet::<"),
+        "{gap_of_nose}"
+    );
+    assert!(!nose.contains("::jet::<") && nose.contains("__sum[0] ="), "{nose}");
+    // Not evaluated: the gap is 1, which is open.
+    assert!(gap_of_nose.contains("[T::constant(1.0f64); "), "{gap_of_nose}");
+}
+
+#[test]
+fn contacts_share_the_sines_of_an_angle_and_keep_their_own() {
+    let force = force_of(
+        "/// A bar with two ends, and a wheel.
+pub mechanism Bar;
+coord y: m = 1;
+coord phi: rad = 0.1;
+coord psi: rad = 0.2;
+body bar { mass: 1kg, com: [0, y], inertia: 1, angle: phi }
+body wheel { mass: 1kg, com: [0, y], inertia: 1, angle: psi }
+contact left { gap: y - sin(phi)*1m, stiffness: 1e6 [N/m] }
+contact right { gap: y + sin(phi)*1m, stiffness: 1e6 [N/m] }
+contact rim { gap: y + sin(psi)*1m, stiffness: 1e6 [N/m] }
+",
+    );
+    let (open, blocks) = force.split_once("if __p.1[").expect("blocks");
+    assert_eq!([open, blocks].map(|part| part.matches("T::sin_cos([").count()), [1, 1], "{force}");
+    assert!(open.contains("T::sin_cos([__s.0[1]])") && blocks.contains("T::sin_cos([__s.0[2]])"), "{force}");
 }

@@ -4,7 +4,10 @@
 
 use mbs_runtime::driver::Polynomial;
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
-use mbs_runtime::{Dynamic, DynamicState, Function, Lanes, Mechanism, Scalar, Stepper, mechanism};
+use mbs_runtime::{
+    Dynamic, DynamicState, Function, Lanes, Mechanism, Partitioned, Scalar, Stepper, mechanism,
+};
+use mechanisms::andrews::Andrews;
 
 mechanism! {
     /// A slider-crank that is driven, loaded, weighed, or left to itself.
@@ -236,4 +239,69 @@ where
     all.extend(scene.powers(&parameters, &position, &qd, &[], &lambda).as_ref());
     all.extend(scene.loads(&parameters, &position, &motion).as_ref());
     all
+}
+
+mechanism! {
+    /// A shaft that is driven, and two masses that no row and no mass couples to it: forces alone do.
+    pub mechanism Separate;
+    coord theta: rad = 0.2;
+    coord x: m = 0.3;
+    coord y: m = 0.4;
+    drive shaft: theta == 0.2 + 3 [rad/s]*t;
+    body one { mass: 2kg, com: [x, 0] }
+    body two { mass: 3kg, com: [0, y] }
+    tsda pulls { from: 100mm*unit(theta), to: [x, y], stiffness: 500, length: 0.2, damping: 4 }
+}
+
+#[test]
+fn a_mass_without_couplings_is_accelerated_by_its_own_force() {
+    let separate: Separate = Separate::default();
+    const { assert!(<Separate as Partitioned<f64, 3, 1>>::IS_UNCOUPLED) };
+    const { assert!(!<Andrews as Partitioned<f64, 7, 6>>::IS_UNCOUPLED) };
+    let p = separate.parameters();
+    let (q, qd) = ([0.2, 0.3, 0.4], [3.0, -1.0, 2.0]);
+    let position = separate.position(&p, &q, 0.0);
+    let force = separate.force(&p, &position, &qd, &[], &[0.0]);
+    let (factors, _) = separate.partition(&p, &position);
+    let found = separate.accelerations(&p, &position, &factors, &force, &[0.7]);
+    assert!(found.inert && force.iter().all(|force| force.abs() > 1.0), "{force:?}");
+    assert_eq!(found.qdd[0], 0.7);
+    // M q̈ + Φ_qᵀ λ = Q
+    let left = separate.mass_times(&p, &position, &found.qdd);
+    for ((left, row), force) in left.iter().zip([1.0, 0.0, 0.0]).zip(force) {
+        assert!(
+            (left + row * found.lambda[0] - force).abs() <= 4.0 * f64::EPSILON * force.abs(),
+            "{left} {force}"
+        );
+    }
+}
+
+mechanism! {
+    /// Two contacts with one gap, whose way to it is long.
+    pub mechanism Twice;
+    coord x: m = 0.3;
+    coord y: m = 0.4;
+    coord phi: rad = 0.1;
+    body ball { mass: 2kg, com: [x, y], inertia: 1, angle: phi }
+    let gap = norm([x, y] - 0.1m*unit(phi + x/1m)) - 1m;
+    contact hard { gap: gap, stiffness: 1e6, exponent: 1.5, depth: 1mm, damping: 0.3 }
+    contact soft { gap: gap, stiffness: 1e3, exponent: 1.5, depth: 1mm, damping: 0.3 }
+}
+
+#[test]
+fn contacts_that_share_a_gap_are_left_out_one_by_one() {
+    let twice: Twice = Twice::default();
+    let force = |evaluated: [bool; 2]| {
+        let mut p = twice.parameters();
+        <Twice as Dynamic<f64, 3, 0>>::evaluated_mut(&mut p).copy_from_slice(&evaluated);
+        let position = twice.position(&p, &[0.3, 0.4, 0.1], 0.0);
+        twice.force(&p, &position, &[0.2, 0.1, 0.3], &[], &[])
+    };
+    let [none, hard, soft, both] = [[false, false], [true, false], [false, true], [true, true]].map(force);
+    for index in 0..3 {
+        assert_eq!(none[index], 0.0);
+        assert!(hard[index] != 0.0 && soft[index] != 0.0);
+        assert!((hard[index] / soft[index] / 1e3 - 1.0).abs() < 1e-14, "{hard:?} {soft:?}");
+        assert_eq!(both[index], hard[index] + soft[index]);
+    }
 }

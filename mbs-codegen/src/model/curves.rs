@@ -120,22 +120,21 @@ impl Elaborator<'_> {
         };
         let seen = self.seen(&curve, &point, span)?;
         let slope = self.radius(&curve, 1, seen.angle, span)?;
-        let slope = self.over(slope, seen.r, span)?;
-        let one = self.number_literal(1.0, span);
-        let quantity = Quantity::Known(Dimension::NUMBER);
-        let steepness = self.binary_scalar(Binary::Hypot, one, slope, quantity, span)?;
+        // 1/√(1 + (R′/r)²) = r/√(r² + R′²), with no quotient that another one waits for.
+        let length = self.binary_scalar(Binary::Hypot, seen.r, slope, seen.r.quantity, span)?;
         match function {
             "distance" => {
                 let gap = self.binary_scalar(Binary::Subtract, seen.r, seen.radius, seen.r.quantity, span)?;
-                Ok(Value::scalar(self.over(gap, steepness, span)?, span))
+                let cosine = self.over(seen.r, length, span)?;
+                Ok(Value::scalar(self.multiply(gap, cosine, span)?, span))
             }
             _ => {
-                // e_r − (R′/r) e_t, over its length r √(1 + (R′/r)²).
+                // r e_r − R′ e_t, over its length.
                 let [x, y] = seen.from;
+                let slope = self.over(slope, seen.r, span)?;
                 let [of_x, of_y] = [self.multiply(slope, x, span)?, self.multiply(slope, y, span)?];
                 let x = self.binary_scalar(Binary::Add, x, of_y, x.quantity, span)?;
                 let y = self.binary_scalar(Binary::Subtract, y, of_x, y.quantity, span)?;
-                let length = self.multiply(seen.r, steepness, span)?;
                 let items = vec![self.over(x, length, span)?, self.over(y, length, span)?];
                 Ok(Value { shape: vec![2], items, span })
             }

@@ -1,8 +1,8 @@
 //! Forces of contacts as code: the forces with all contacts open, and the force that each contact adds.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::schedule::Section;
+use super::schedule::{Angle, Assignment, Section};
 use crate::equations::{ByContact, Dynamics, Push};
 use crate::symbolic::{Graph, NodeId};
 
@@ -64,7 +64,7 @@ impl ContactRoots {
     }
 
     /// Before: functions that order the code of a function of the state, and of one after another. After: all in order; the first
-    /// section of each function has the values that contacts use among its results.
+    /// section of each function has the values that contacts use among its results, and the sines and cosines that several share.
     pub fn order(
         &self,
         graph: &Graph,
@@ -73,7 +73,13 @@ impl ContactRoots {
     ) -> ContactProgram {
         let mut function = |index: usize| {
             let roots = |all: &'_ [Vec<NodeId>; 4]| all.get(index).cloned().unwrap_or_default();
-            let mut first = section(&roots(&self.open));
+            let open = section(&roots(&self.open));
+            let each = self.contacts.iter().map(|all| behind(&open, &roots(all)));
+            let shared = shared_angles(each);
+            let mut first = match shared.is_empty() {
+                true => open,
+                false => section(&[roots(&self.open), shared].concat()),
+            };
             let computed: BTreeSet<NodeId> = first.computed().collect();
             let contact = |all: &[Vec<NodeId>; 4]| {
                 let roots = roots(all);
@@ -97,6 +103,22 @@ impl ContactRoots {
         });
         ContactProgram { open, contacts: contacts.collect() }
     }
+}
+
+/// Sines and cosines of the angles that more than one section computes.
+fn shared_angles(sections: impl Iterator<Item = Section>) -> Vec<NodeId> {
+    let mut found: BTreeMap<NodeId, (usize, BTreeSet<NodeId>)> = BTreeMap::new();
+    for section in sections {
+        for line in section.lines {
+            let Assignment::SineCosine(angles) = line else { continue };
+            for Angle { angle, sine, cosine } in angles {
+                let (count, values) = found.entry(angle).or_default();
+                *count += 1;
+                values.extend(sine.into_iter().chain(cosine));
+            }
+        }
+    }
+    found.into_values().filter(|(count, _)| 1 < *count).flat_map(|(_, values)| values).collect()
 }
 
 fn of_push(push: &Push, powers: Vec<NodeId>) -> [Vec<NodeId>; 4] {

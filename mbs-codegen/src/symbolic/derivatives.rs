@@ -160,14 +160,18 @@ pub(super) fn max(g: &mut Graph, _: NodeId, (a, da): Moving, (b, db): Moving) ->
 /// Derivative at the origin: that for a slightly larger first argument, direction (1, 0).
 pub(super) fn hypot(g: &mut Graph, y: NodeId, (a, da): Moving, (b, db): Moving) -> Derivative {
     let (zero, one) = (g.constant(0.0), g.constant(1.0));
+    // √(1 + x²) is nowhere 0.
+    let is_positive = [a, b].into_iter().any(|id| g.constant_value(id).is_some_and(|value| value != 0.0));
+    let ratio = |g: &mut Graph, of: NodeId, origin: NodeId| {
+        let ratio = g.divide(of, y);
+        if is_positive { ratio } else { g.select(zero, y, ratio, origin) }
+    };
     let first = da.map(|da| {
-        let ratio = g.divide(a, y);
-        let cosine = g.select(zero, y, ratio, one);
+        let cosine = ratio(g, a, one);
         g.multiply(cosine, da)
     });
     let second = db.map(|db| {
-        let ratio = g.divide(b, y);
-        let sine = g.select(zero, y, ratio, zero);
+        let sine = ratio(g, b, zero);
         g.multiply(sine, db)
     });
     sum(g, first, second)

@@ -29,6 +29,9 @@ pub(super) fn jet<T: Scalar, const C: usize, const K: usize>(
 #[inline(always)]
 pub(super) fn distance<T: Scalar, X: Copy>(x: T, found: &T::Lanes<X>, origin: impl Fn(&X) -> f64) -> T {
     let leading = each(found, &origin);
+    if const { size_of::<T::Real>() == size_of::<f64>() } {
+        return x - leading;
+    }
     let rest = each(found, |found| origin(found) - T::Real::constant(origin(found)).to_f64());
     (x - leading) - rest
 }
@@ -44,31 +47,45 @@ pub(super) fn each<T: Scalar, X: Copy>(found: &T::Lanes<X>, number: impl Fn(&X) 
 
 /// Value and `K` − 1 derivatives of Σ `coefficients[j]` xʲ; NaN throughout where `x` is not finite.
 ///
-/// Horner's scheme for the value and, in the same loop, for every derivative over its factorial.
+/// Even and odd powers apart, for each derivative by itself: so few products wait for others.
 /// Source: Knuth 1997, The Art of Computer Programming 2, §4.6.4.
 #[inline(always)]
 pub(super) fn taylor<T: Scalar, const C: usize, const K: usize>(coefficients: [T; C], x: T) -> [T; K] {
     let unknown = x * T::constant(0.0); // 0, or NaN where `x` is not finite
-    let mut jet = [unknown; K];
-    for (step, coefficient) in coefficients.into_iter().rev().enumerate() {
-        let mut carried = coefficient + if step == 0 { unknown } else { T::constant(0.0) };
-        // After `step` coefficients no derivative beyond the order `step` has begun.
-        for derivative in jet.iter_mut().take(step + 1) {
-            let before = *derivative;
-            *derivative = before * x + carried;
-            carried = before;
+    let square = x * x;
+    // Those of the derivative of the order, j! / (j − order)! times the coefficient of x^j, from j = order on.
+    let mut scaled = coefficients;
+    from_fn(|order| {
+        if order > 0 {
+            for (j, coefficient) in scaled.iter_mut().enumerate().skip(order) {
+                *coefficient = *coefficient * T::constant((j - order + 1) as f64);
+            }
         }
-    }
-    let mut factorial = 1.0;
-    for (order, derivative) in jet.iter_mut().enumerate() {
-        factorial *= order.max(1) as f64;
-        *derivative = *derivative * T::constant(factorial);
-    }
-    jet
+        let mut parts = [unknown; 2];
+        for (j, coefficient) in scaled.iter().enumerate().skip(order).rev() {
+            let is_highest = C < j + 3;
+            let part = if (j - order) % 2 == 0 { &mut parts[0] } else { &mut parts[1] };
+            *part = if is_highest { *coefficient + unknown } else { *part * square + *coefficient };
+        }
+        let [even, odd] = parts;
+        if C > order + 1 { odd * x + even } else { even }
+    })
 }
 
 /// Number of whole periods that `x` lies beyond `start`.
 #[inline]
 pub(super) fn turns(x: f64, start: f64, period: f64) -> f64 {
-    libm::floor((x - start) / period)
+    floor((x - start) / period)
+}
+
+/// The largest whole number that is not above `x`: `libm::floor`, which takes the bits apart on targets without an instruction for it.
+#[inline(always)]
+pub(super) fn floor(x: f64) -> f64 {
+    let towards_zero = (x as i64) as f64;
+    let is_near = (x - towards_zero).abs() < 1.0;
+    match is_near {
+        true => towards_zero - if x < towards_zero { 1.0 } else { 0.0 },
+        // NaN, and what is beyond all integers.
+        false => libm::floor(x),
+    }
 }

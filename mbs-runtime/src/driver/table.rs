@@ -1,6 +1,6 @@
 //! Tables of polynomials between knots.
 
-use crate::driver::piecewise::{Piece, jet};
+use crate::driver::piecewise::{Piece, floor, jet};
 use crate::mechanism::function::Function;
 use crate::scalar::number::Scalar;
 
@@ -37,13 +37,9 @@ impl<'a, const C: usize> Table<'a, C> {
         self.jet(x)
     }
 
-    /// Number of the piece at `x`, which lies within the first period.
+    /// Number of the piece at `x`, which lies within the first period: `guess`, where it holds there.
     #[inline]
-    fn index(&self, x: f64) -> usize {
-        let first = self.knots.first().copied().unwrap_or(f64::NAN);
-        let intervals =
-            if self.period.is_some() { self.knots.len() } else { self.knots.len().saturating_sub(1) };
-        let guess = ((x - first) * self.rate * intervals as f64) as usize; // 0 for NaN and what is negative
+    fn index(&self, x: f64, guess: usize) -> usize {
         let begins = self.knots.get(guess).is_some_and(|knot| *knot <= x);
         let holds = begins && self.knots.get(guess.saturating_add(1)).is_none_or(|next| x < *next);
         if holds { guess } else { self.knots.partition_point(|knot| *knot <= x).saturating_sub(1) }
@@ -53,22 +49,30 @@ impl<'a, const C: usize> Table<'a, C> {
     #[inline]
     fn shift(&self, x: f64) -> f64 {
         let (Some(period), Some(first)) = (self.period, self.knots.first()) else { return 0.0 };
-        libm::floor((x - first) * self.rate) * period
+        floor((x - first) * self.rate) * period
     }
 
     #[inline]
     fn piece(&self, x: f64) -> Piece<C> {
-        let shift = self.shift(x);
+        let first = self.knots.first().copied().unwrap_or(f64::NAN);
+        // In lengths of the table.
+        let place = (x - first) * self.rate;
+        let (turns, shift, intervals) = match self.period {
+            Some(period) => {
+                let turns = floor(place);
+                (turns, turns * period, self.knots.len())
+            }
+            None => (0.0, 0.0, self.knots.len().saturating_sub(1)),
+        };
         let local = x - shift;
         // So many periods away that the rest after them has no digit left.
-        let kept = self.period.is_none_or(|period| {
-            let first = self.knots.first().copied().unwrap_or(f64::NAN);
-            (local - first).abs() <= 2.0 * period
-        });
+        let kept = self.period.is_none_or(|period| (local - first).abs() <= 2.0 * period);
         if !kept {
             return Piece { origin: f64::NAN, coefficients: [f64::NAN; C] };
         }
-        let index = self.index(local);
+        // 0 for NaN, far too much for what is negative: then the knots are searched.
+        let guess = ((place - turns) * intervals as f64) as i64 as usize;
+        let index = self.index(local, guess);
         let (Some(knot), Some(coefficients)) = (self.knots.get(index), self.pieces.get(index)) else {
             return Piece { origin: f64::NAN, coefficients: [f64::NAN; C] };
         };

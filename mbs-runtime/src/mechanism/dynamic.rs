@@ -371,6 +371,9 @@ pub trait Partitioned<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N
     const IS_PARTITIONED: bool = true;
     /// The independent coordinates, ascending: N − M; none where there are no blocks.
     const INDEPENDENT: &'static [u16];
+    /// `true` if each independent coordinate has a mass of its own: none is in a row, and no entry of M couples one with any other
+    /// coordinate.
+    const IS_UNCOUPLED: bool = false;
 
     /// Solves Φ(q, t) = 0 for the dependent coordinates; the independent ones of `q` (N) stay as they are.
     fn solve_dependent<S: BlockSolver<T>>(

@@ -77,7 +77,7 @@ pub trait Function<T: Scalar> {
 impl<T: Scalar, F: Function<T>> Function<T> for &F {
     const ORDER: usize = F::ORDER;
 
-    #[inline]
+    #[inline(always)]
     fn jet<const K: usize>(&self, x: T) -> [T; K] {
         (*self).jet(x)
     }

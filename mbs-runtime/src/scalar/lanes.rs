@@ -273,5 +273,9 @@ impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
         (sines, cosines)
     }
     lane_by_lane!(each, abs, sqrt, exp, ln, tan, asin, acos, atan, sinh, cosh, tanh, asinh, acosh, atanh);
-    lane_by_lane!(zip, atan2(x), powf(exponent), hypot(other));
+    lane_by_lane!(zip, atan2(x), powf(exponent));
+    #[inline(always)]
+    fn hypot(self, other: Self) -> Self {
+        Lanes(R::hypot_of_lanes(self.0, other.0))
+    }
 }

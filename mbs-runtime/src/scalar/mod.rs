@@ -2,6 +2,7 @@
 
 pub(crate) mod interval;
 pub(crate) mod lanes;
+pub(crate) mod lengths;
 pub(crate) mod number;
 #[cfg(test)]
 pub(crate) mod sequence;

@@ -11,6 +11,7 @@ use core::ops::Not;
 use core::ops::Sub;
 
 use crate::scalar::lanes::{Lanes, REGISTER};
+use crate::scalar::lengths;
 use crate::scalar::trigonometry;
 
 /// A number as emitted code sees it; open to implementations outside this crate.
@@ -173,6 +174,11 @@ pub trait Real: Scalar<Real = Self, Mask = bool> + PartialOrd {
     const FALSE: Self::Word;
     /// The same value, for reports.
     fn to_f64(self) -> f64;
+    /// As [`hypot`](Scalar::hypot), to the same bits, of L lanes.
+    #[inline(always)]
+    fn hypot_of_lanes<const L: usize>(x: [Self; L], y: [Self; L]) -> [Self; L] {
+        lengths::each(x, y)
+    }
     /// As [`sin_cos`](Scalar::sin_cos), of K angles in L lanes each.
     #[inline(always)]
     fn sin_cos_of_lanes<const L: usize, const K: usize>(
@@ -188,7 +194,7 @@ pub trait Real: Scalar<Real = Self, Mask = bool> + PartialOrd {
 
 /// A floating-point type: the bits of a truth value, sines and cosines, and functions of the library `libm`.
 macro_rules! real {
-    ($real:ident, $word:ident, $sincos:path, $lanes:path, { $($name:ident($($other:ident)?) = $function:ident,)* }) => {
+    ($real:ident, $word:ident, $sincos:path, $lanes:path, $hypot:path, $hypots:path, { $($name:ident($($other:ident)?) = $function:ident,)* }) => {
         impl Scalar for $real {
             type Real = $real;
             type Mask = bool;
@@ -246,6 +252,10 @@ macro_rules! real {
             fn abs(self) -> Self {
                 <$real>::abs(self)
             }
+            #[inline(always)]
+            fn hypot(self, other: Self) -> Self {
+                $hypot(self, other)
+            }
             $(
                 #[inline(always)]
                 fn $name(self $(, $other: Self)?) -> Self {
@@ -265,6 +275,10 @@ macro_rules! real {
                 self as f64
             }
             #[inline(always)]
+            fn hypot_of_lanes<const L: usize>(x: [Self; L], y: [Self; L]) -> [Self; L] {
+                $hypots(x, y)
+            }
+            #[inline(always)]
             fn sin_cos_of_lanes<const L: usize, const K: usize>(
                 angles: [[Self; L]; K],
             ) -> ([[Self; L]; K], [[Self; L]; K]) {
@@ -274,16 +288,15 @@ macro_rules! real {
     };
 }
 
-real!(f64, u64, trigonometry::sin_cos, trigonometry::sin_cos_of_lanes, {
+real!(f64, u64, trigonometry::sin_cos, trigonometry::sin_cos_of_lanes, lengths::hypot, lengths::hypot_of_lanes, {
     sqrt() = sqrt, exp() = exp, ln() = log, tan() = tan, asin() = asin, acos() = acos,
     atan() = atan, atan2(x) = atan2, sinh() = sinh, cosh() = cosh, tanh() = tanh, asinh() = asinh,
-    acosh() = acosh, atanh() = atanh, powf(exponent) = pow, hypot(other) = hypot,
+    acosh() = acosh, atanh() = atanh, powf(exponent) = pow,
 });
-real!(f32, u32, trigonometry::sin_cos_single, trigonometry::sin_cos_of_lanes_single, {
+real!(f32, u32, trigonometry::sin_cos_single, trigonometry::sin_cos_of_lanes_single, libm::hypotf, lengths::each, {
     sqrt() = sqrtf, exp() = expf, ln() = logf, tan() = tanf, asin() = asinf, acos() = acosf,
     atan() = atanf, atan2(x) = atan2f, sinh() = sinhf, cosh() = coshf, tanh() = tanhf,
     asinh() = asinhf, acosh() = acoshf, atanh() = atanhf, powf(exponent) = powf,
-    hypot(other) = hypotf,
 });
 
 /// An index that a number carries, of lane `lane`; the cast saturates.

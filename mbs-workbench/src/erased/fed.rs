@@ -169,6 +169,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Partitioned<f64, N, 
 
     const IS_PARTITIONED: bool = S::IS_PARTITIONED;
     const INDEPENDENT: &'static [u16] = S::INDEPENDENT;
+    const IS_UNCOUPLED: bool = S::IS_UNCOUPLED;
 
     fn solve_dependent<B: BlockSolver<f64>>(
         &self,

@@ -155,3 +155,85 @@ fn flat_faces_and_pairs_of_curves_meet_as_circles_do() {
     println!("flat on a curve: {:.1e} m, curve on curve: {:.1e} m of 1e-14", worst[0], worst[1]);
     assert!(worst.iter().all(|worst| *worst < 1e-14), "{worst:?}");
 }
+
+/// Circle that does not surround the cam's centre, so it has no polar radius: a coordinate of e [1, 0] + ρ [cos φ, sin φ], with
+/// φ = u + sin(u)/3 so that the point does not move evenly.
+#[derive(Clone, Copy, Debug)]
+struct Round {
+    /// 0 for x, a quarter of a turn for y, as the phase of cos(φ − phase).
+    phase: f64,
+    beside: f64,
+}
+
+impl Function<f64> for Round {
+    const ORDER: usize = 3;
+
+    fn jet<const K: usize>(&self, u: f64) -> [f64; K] {
+        let (sine, cosine) = (u + u.sin() / 3.0 - self.phase).sin_cos();
+        let [f1, f2, f3] = [1.0 + u.cos() / 3.0, -u.sin() / 3.0, -u.cos() / 3.0];
+        let all = [
+            self.beside + 0.025 * cosine,
+            -0.025 * sine * f1,
+            -0.025 * (cosine * f1 * f1 + sine * f2),
+            -0.025 * (3.0 * cosine * f1 * f2 + sine * (f3 - f1 * f1 * f1)),
+        ];
+        core::array::from_fn(|order| all.get(order).copied().unwrap_or(f64::NAN))
+    }
+}
+
+mechanism! {
+    /// A follower on a rocking cam with a parameter, its distance by the foot of the perpendicular.
+    pub mechanism ByParameter;
+    param speed: rad/s = 3000rpm;
+    function px: m(rad), C3, periodic TAU;
+    function py: m(rad), C3, periodic TAU;
+    coord theta: rad = 90deg;
+    coord y: m = 56mm;
+    coord u: rad = 0;
+    let A = [0m, y];
+    let foot = rot(theta)*[px(u), py(u)];
+    let along = d(foot, u);
+    constraint perpendicular { dot(A - foot, along) == 0 [m^2]; }
+    branch nearest: dot(A - foot, d(along, u)) < dot(along, along);
+    drive shaft: theta == 90deg + 25deg*sin(speed*t);
+    body follower { mass: 100gram, com: [0, y] }
+    tsda spring { from: [0, 120mm], to: [0, y], stiffness: 4000, length: 80mm }
+    contact face {
+        gap: dot(A - foot, [along.1, -along.0])/norm(along),
+        stiffness: 1e8,
+        exponent: 1.5,
+        depth: 1mm,
+        damping: 0.3
+    }
+    start y = 56mm rate 0;
+}
+
+mechanism! {
+    /// The same from the distance of two centres.
+    pub mechanism ByBoth;
+    param speed: rad/s = 3000rpm;
+    coord theta: rad = 90deg;
+    coord y: m = 56mm;
+    drive shaft: theta == 90deg + 25deg*sin(speed*t);
+    body follower { mass: 100gram, com: [0, y] }
+    tsda spring { from: [0, 120mm], to: [0, y], stiffness: 4000, length: 80mm }
+    contact face {
+        gap: norm([0m, y] - 30mm*unit(theta)) - 25mm,
+        stiffness: 1e8,
+        exponent: 1.5,
+        depth: 1mm,
+        damping: 0.3
+    }
+    start y = 56mm rate 0;
+}
+
+#[test]
+fn a_curve_with_a_parameter_need_not_surround_its_centre() {
+    let [px, py] = [(0.0, 0.03), (0.25 * TAU, 0.0)].map(|(phase, beside)| Round { phase, beside });
+    let by_parameter = heights!(ByParameter::<_, _, f64>::new(px, py));
+    let by_both = heights!(ByBoth::<f64>::default());
+    let apart = by_parameter.iter().zip(&by_both).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let stroke = by_both.iter().fold(0.0_f64, |most, y| most.max((y - by_both[0]).abs()));
+    println!("contact by a parameter: {apart:.1e} m of 1e-9, stroke {:.1} mm", 1e3 * stroke);
+    assert!(apart < 1e-9 && stroke > 2e-3, "{apart:e} {stroke}");
+}

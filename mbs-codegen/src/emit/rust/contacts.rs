@@ -7,7 +7,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use crate::emit::rust::code::{array, block, lets, print};
-use crate::emit::rust::scope::Scope;
+use crate::emit::rust::scope::{Scope, number};
 use crate::equations::{ByContact, Gap, Pressing, Push, Sparse};
 use crate::program::{Assignment, ContactProgram, PushProgram, Section};
 use crate::symbolic::NodeId;
@@ -18,8 +18,15 @@ const CLOSED: &str = "__p.1";
 /// Lines of a contact's block from which on a test skips them where the gap turns out to be open.
 const LEAST_SKIPPED: usize = 16;
 
-/// A gap, lines up to it, lines after it.
-type Parted<'a> = (String, Vec<&'a Assignment>, Vec<&'a Assignment>);
+/// Lines of a contact's section.
+struct Parted<'a> {
+    /// Name of the gap.
+    gap: String,
+    /// Lines up to it.
+    before: Vec<&'a Assignment>,
+    /// The others.
+    after: Vec<&'a Assignment>,
+}
 
 /// Forces of a text with contacts.
 pub struct Blocks<'a> {
@@ -88,32 +95,59 @@ impl Blocks<'_> {
         first: String,
         add: impl Fn(&Pressing) -> String,
     ) -> TokenStream {
-        let mut text = String::new();
-        lets(section(&self.program.open), self.scope, &mut text);
-        let _ = writeln!(text, "let mut __sum = {first};");
+        let (mut gaps, mut forces) = (String::new(), String::new());
         for (contact, program) in self.by_contact.contacts.iter().zip(&self.program.contacts) {
             let added = add(contact);
             if added.is_empty() {
                 continue;
             }
-            let _ = writeln!(text, "if {CLOSED}[{}] {{", contact.contact);
             let gap = self.gaps.get(contact.contact).map(|gap| gap.gap);
             let section = section(program);
             match gap.and_then(|gap| self.up_to(gap, section)) {
-                Some((gap, before, after)) => {
-                    before.iter().for_each(|line| print(line, self.scope, &mut text));
-                    let _ = writeln!(text, "if !T::all(T::less({}, {gap})) {{", self.scope.or_zero(None));
-                    after.iter().for_each(|line| print(line, self.scope, &mut text));
-                    text += &(added + "}\n");
+                Some(parted) => {
+                    let (text, names) = self.gap(contact.contact, &parted, section);
+                    gaps += &text;
+                    let (zero, gap) = (self.scope.or_zero(None), &parted.gap);
+                    let _ = writeln!(forces, "{{\nlet {names};\nif !T::all(T::less({zero}, {gap})) {{");
+                    parted.after.iter().for_each(|line| print(line, self.scope, &mut forces));
+                    forces += &(added + "}\n");
                 }
                 None => {
-                    lets(section, self.scope, &mut text);
-                    text += &added;
+                    let _ = writeln!(forces, "if {CLOSED}[{}] {{", contact.contact);
+                    lets(section, self.scope, &mut forces);
+                    forces += &added;
                 }
             }
-            text += "}\n";
+            forces += "}\n";
         }
-        block(&(text + "__sum"), self.runtime)
+        let mut text = String::new();
+        lets(section(&self.program.open), self.scope, &mut text);
+        text += &gaps;
+        let _ = writeln!(text, "let mut __sum = {first};");
+        block(&(text + &forces + "__sum"), self.runtime)
+    }
+
+    /// The gap of a contact with the values that its force needs of the way there. Those of a contact that is not evaluated are 1: such a
+    /// gap is open. All gaps come before all forces: no gap waits for another one, while each is a long chain. Contacts may share values, so
+    /// each has an array of its own. Returns that, and the definition of its entries by their names.
+    fn gap(
+        &self,
+        contact: usize,
+        Parted { gap, before, after }: &Parted<'_>,
+        section: &Section,
+    ) -> (String, String) {
+        let used = after.iter().flat_map(|line| line.operands(self.scope.graph));
+        let used: BTreeSet<NodeId> = used.chain(section.results.iter().copied()).collect();
+        let known = before.iter().flat_map(|line| line.values());
+        let kept = known.filter(|id| used.contains(id)).map(|id| self.scope.operand(id));
+        let names: BTreeSet<String> = kept.chain([gap.clone()]).collect();
+        let count = names.len();
+        let names = names.into_iter().collect::<Vec<_>>().join(", ");
+        let mut text = format!("let __gap{contact} = if {CLOSED}[{contact}] {{\n");
+        before.iter().for_each(|line| print(line, self.scope, &mut text));
+        let one = number(1.0);
+        let _ = writeln!(text, "[{names}]\n}} else {{\n[{one}; {count}]\n}};");
+        (text, format!("[{names}] = __gap{contact}"))
     }
 
     /// The gap of a contact, the lines of its section that the gap needs, and the others. `None` where the section does not compute it, is
@@ -133,7 +167,7 @@ impl Blocks<'_> {
         before.reverse();
         after.reverse();
         let is_worth_it = !before.is_empty() && LEAST_SKIPPED <= after.len();
-        (is_short && is_worth_it).then(|| (self.scope.operand(gap), before, after))
+        (is_short && is_worth_it).then(|| Parted { gap: self.scope.operand(gap), before, after })
     }
 }
 

@@ -81,10 +81,22 @@ pub struct Bodies {
     pub work: TokenStream,
     /// Coordinates that no block solves for.
     pub independent: Vec<u16>,
+    /// `true` if each of them has a mass of its own.
+    pub is_uncoupled: bool,
     pub complete: TokenStream,
     pub reduce: TokenStream,
     /// Masses and forces, where the text has any.
     pub dynamics: Option<DynamicBodies>,
+}
+
+/// `true` if no row has one of the `independent` coordinates, and no entry of M couples one with any other coordinate.
+fn is_uncoupled(equations: &Equations, independent: &[usize]) -> bool {
+    let Some(dynamics) = &equations.dynamics else { return false };
+    let is_free = |index: &usize| independent.binary_search(index).is_ok();
+    let couples = |row: usize, column: usize| row != column && (is_free(&row) || is_free(&column));
+    let in_rows = equations.rows.iter().flat_map(|row| &row.phi_q).any(|(column, _)| is_free(column));
+    let mut masses = dynamics.mass.iter().enumerate();
+    !in_rows && !masses.any(|(row, entries)| entries.iter().any(|(column, _)| couples(row, *column)))
 }
 
 /// Most operations of a solution with its factorization that is always inlined into a step. The numbers of one loop or
@@ -197,6 +209,7 @@ pub fn bodies(
         factorize: block(&linear.factorize, runtime),
         solve_linear: block(&linear.solve, runtime),
         work: work::work(model, equations, program, entries.len(), runtime),
+        is_uncoupled: is_uncoupled(equations, independent),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
         complete: block(&linear.complete, runtime),
         reduce: block(&linear.reduce, runtime),

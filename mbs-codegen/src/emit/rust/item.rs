@@ -373,7 +373,9 @@ fn partitioned(
     runtime: &TokenStream,
 ) -> TokenStream {
     let n = model.coordinates.len();
-    let Bodies { solve_with_position, factorize, independent, complete, reduce, .. } = &part.bodies;
+    let Bodies { solve_with_position, factorize, independent, complete, reduce, is_uncoupled, .. } =
+        &part.bodies;
+    let uncoupled = is_uncoupled.then(|| quote! { const IS_UNCOUPLED: ::core::primitive::bool = true; });
     let (freedom, inline) = (independent.len(), inlined(part.bodies.factorizes_in_line));
     // For a square text these are the functions of `Kinematic`.
     let (solve_blocks, factorize) = match part.square {
@@ -392,6 +394,7 @@ fn partitioned(
         impl<#generics> #runtime::Partitioned<T, #n, #m> for #name {
             type Partition = __Factors<T>;
             const INDEPENDENT: &'static [::core::primitive::u16] = &[#(#independent),*];
+            #uncoupled
             #[inline]
             fn solve_dependent<__S: #runtime::BlockSolver<T>>(
                 &self,

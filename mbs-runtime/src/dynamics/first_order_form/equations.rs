@@ -171,8 +171,8 @@ where
     }
 
     /// Of steps of a method of `order` that cannot be made smaller.
-    pub(crate) fn of_fixed_steps(self, order: u32) -> Self {
-        Equations { fixed: true, integrating: order > ORDER_OF_INTEGRALS, ..self }
+    pub(crate) fn keep_steps(&mut self, order: u32) {
+        (self.fixed, self.integrating) = (true, order > ORDER_OF_INTEGRALS);
     }
 
     /// The phases at time `t` (s) that have moved on by `increments`.
@@ -228,7 +228,7 @@ where
     }
 
     /// Rates and multipliers of a state.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn solve(
         &mut self,
         t: R,

@@ -47,8 +47,8 @@ where
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        let mut motion =
-            Equations::new(model, &self.formulation, from, *counts).of_fixed_steps(self.integrator.order());
+        let mut motion = Equations::new(model, &self.formulation, from, *counts);
+        motion.keep_steps(self.integrator.order());
         let t = from.t + h;
         let start = beginning(model.mechanism, from);
         let stepped = self.integrator.step(&mut motion, from.t, h, &start.y, &start.rate);

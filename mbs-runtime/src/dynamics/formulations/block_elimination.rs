@@ -173,6 +173,9 @@ where
     let (zero, one) = (T::constant(0.0), T::constant(1.0));
     let mut qdd = [zero; N];
     mechanism.complete(partition, gamma, &mut qdd);
+    if const { S::IS_UNCOUPLED } {
+        return uncoupled(mechanism, parameters, position, partition, (force, qdd));
+    }
     let mut open = less(force, &mechanism.mass_times(parameters, position, &qdd));
     let (mut motions, mut momenta) = ([[zero; N]; F], [[zero; N]; F]);
     for ((motion, momentum), independent) in motions.iter_mut().zip(&mut momenta).zip(S::INDEPENDENT) {
@@ -187,6 +190,43 @@ where
     for ((motion, momentum), share) in motions.iter().zip(&momenta).zip(&solution) {
         add(&mut qdd, *share, motion);
         add(&mut open, -*share, momentum);
+    }
+    let lambda = mechanism.reduce(partition, &mut open);
+    Transformed { qdd, lambda, inert }
+}
+
+/// [`accelerations`] where each independent coordinate has a mass of its own, from accelerations `qdd` (N) of the dependent ones. To the same
+/// bits: what the general way multiplies by 0 and adds is left out.
+#[inline(always)]
+fn uncoupled<S, T: Scalar, const N: usize, const M: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    position: &S::Position,
+    partition: &S::Partition,
+    (force, mut qdd): (&[T; N], [T; N]),
+) -> Transformed<T, N, M>
+where
+    S: Dynamic<T, N, M>,
+{
+    let (zero, one) = (T::constant(0.0), T::constant(1.0));
+    let mut units = [zero; N];
+    for independent in S::INDEPENDENT {
+        if let Some(unit) = units.get_mut(usize::from(*independent)) {
+            *unit = one;
+        }
+    }
+    let masses = mechanism.mass_times(parameters, position, &units);
+    let mut open = less(force, &mechanism.mass_times(parameters, position, &qdd));
+    let mut inert = true;
+    for independent in S::INDEPENDENT {
+        let index = usize::from(*independent);
+        let mass = at(&masses, index);
+        let positive = zero.less(mass);
+        inert &= T::all(positive);
+        let share = at(&open, index) * (one / T::select(positive, mass, one));
+        if let (Some(acceleration), Some(open)) = (qdd.get_mut(index), open.get_mut(index)) {
+            (*acceleration, *open) = (share, *open - share * mass);
+        }
     }
     let lambda = mechanism.reduce(partition, &mut open);
     Transformed { qdd, lambda, inert }

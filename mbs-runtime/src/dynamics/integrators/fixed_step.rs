@@ -77,10 +77,16 @@ impl FixedStep for RungeKutta4 {
         y: &E::State,
         rate: &E::State,
     ) -> Result<E::State, Failure> {
-        let middle = t + T::constant(0.5) * h;
-        let k2 = equation.rate(middle, &y.plus(h, &[0.5], [rate]))?;
-        let k3 = equation.rate(middle, &y.plus(h, &[0.5], [&k2]))?;
-        let k4 = equation.rate(t + h, &y.plus(h, &[1.0], [&k3]))?;
-        Ok(y.plus(h, &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0], [rate, &k2, &k3, &k4]))
+        // Places and weights of the stages after the first; as a loop, so that the equation is compiled into it once.
+        const STAGES: [(f64, f64); 3] = [(0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
+        let (mut stage, mut change) = (*rate, y.zero());
+        change.add(T::constant(1.0 / 6.0), rate);
+        for (place, weight) in STAGES {
+            stage = equation.rate(t + T::constant(place) * h, &y.plus(h, &[place], [&stage]))?;
+            change.add(T::constant(weight), &stage);
+        }
+        let mut next = *y;
+        next.add(h, &change);
+        Ok(next)
     }
 }

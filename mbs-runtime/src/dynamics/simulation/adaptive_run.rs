@@ -154,7 +154,7 @@ where
             let mut counts = run.counts;
             counts.steps += u64::from(run.accepted.wrapping_sub(steps));
             shown.take_grips(run.parameters.as_ref());
-            shown.take(*instant, Some(run.phases), counts);
+            shown.take(instant, Some(run.phases), counts);
             shown.passage = shown.passage.or(run.passage);
             see(&shown);
         })
@@ -311,7 +311,7 @@ where
         self.passage = self.passage.or(passage);
         self.rank_rises = rank_rises;
         self.take_grips(parameters.as_ref());
-        self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
+        self.take(&Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
         self.passed = passage.is_some();
         self.reference = self.reference + gained;
         if let (Some((reach, _)), Some((_, event))) = (stopped, &mut event) {

@@ -113,10 +113,15 @@ where
     /// A step of `h` (s) that ends at no contact.
     #[inline(always)]
     fn whole_step(&mut self, h: R) -> Result<(), Failure> {
-        let ahead = self.ahead(h, self.counts, false)?;
-        self.check_ahead(&ahead)?;
-        self.go(ahead);
-        Ok(())
+        // By reference: what a step is made of is long.
+        match &self.ahead(h, self.counts, false) {
+            Ok(ahead) => {
+                self.check_ahead(ahead)?;
+                self.go(ahead);
+                Ok(())
+            }
+            Err(failure) => Err(*failure),
+        }
     }
 
     /// Moves on to `until` (s) in `steps` equal steps; not at all where `until` is the present time.
@@ -151,13 +156,11 @@ where
         without_open: bool,
     ) -> Result<AheadOf<S, R, N, M>, Failure> {
         let mut open = None;
-        let mut ahead = self.trial(h, counts, without_open.then_some(&mut open));
-        if let Ok(known) = &ahead
-            && let Err(failure) = self.judge(known)
-        {
-            ahead = Err(failure);
+        let ahead = self.trial(h, counts, without_open.then_some(&mut open));
+        match ahead.as_ref().map_or(Ok(()), |known| self.judge(known)) {
+            Ok(()) => ahead,
+            Err(failure) => Err(failure),
         }
-        ahead
     }
 
     /// A step of `h` (s) of which the end is not judged yet. Contacts that are open where it begins are left out where `open` is asked
@@ -186,10 +189,11 @@ where
             parameters = left_out;
         }
         let model = Model { parameters, ..model };
-        let next = self
-            .method
-            .step(&model, from, h, &mut counts)
-            .map_err(|failure| model.traced(failure, from.t, &from.y))?;
+        // No `map_err`, which would move the whole instant once more.
+        let next = match self.method.step(&model, from, h, &mut counts) {
+            Ok(next) => next,
+            Err(failure) => return Err(model.traced(failure, from.t, &from.y)),
+        };
         let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps = self.counts.steps + 1;
         Ok(Ahead { from: fresh, next, phases, counts })
@@ -214,8 +218,9 @@ where
     }
 
     /// Takes a step.
-    pub(super) fn go(&mut self, ahead: AheadOf<S, R, N, M>) {
+    pub(super) fn go(&mut self, ahead: &AheadOf<S, R, N, M>) {
         let Ahead { from: Fresh { instant: from, gained, rank_rises }, next, phases, counts } = ahead;
+        let (gained, rank_rises, phases, counts) = (*gained, *rank_rises, *phases, *counts);
         let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
         let passage = Passage::between(ends.0, ends.1);
         self.passage = self.passage.or(passage);
@@ -308,7 +313,7 @@ where
         }
         self.judge(&trial.ahead)?;
         self.check_ahead(&trial.ahead)?;
-        self.go(trial.ahead);
+        self.go(&trial.ahead);
         Ok(())
     }
 
@@ -342,7 +347,7 @@ where
                 false => self.ahead(rest, self.counts, false)?,
             };
             self.check_ahead(&ahead)?;
-            self.go(ahead);
+            self.go(&ahead);
             if until <= self.now.t {
                 break;
             }

@@ -88,7 +88,7 @@ where
                     None => (whole, false),
                 };
                 self.check_ahead(&last)?;
-                self.go(last);
+                self.go(&last);
                 if let Some((_, scale)) = found.filter(|_| is_event) {
                     let value = event(self.now.t, &self.now.y.q, &self.now.y.qd);
                     self.stopped = Some(Stopped::new(self.now.t, value, scale));

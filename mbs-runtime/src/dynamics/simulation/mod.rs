@@ -335,14 +335,14 @@ where
         let Fresh { instant, gained, rank_rises } = self.fresh(&mut counts)?;
         if self.stale {
             let phases = self.mechanism.phases();
-            self.take(instant, Some(phases), counts);
+            self.take(&instant, Some(phases), counts);
             (self.rank_rises, self.reference) = (rank_rises, self.reference + gained);
         }
         Ok(())
     }
 
     /// Goes on from `next`, with `phases` or with those that kinematics moves on.
-    fn take(&mut self, next: Instant<R, N, M, S::States>, phases: Option<S::Phases>, counts: Counts) {
+    fn take(&mut self, next: &Instant<R, N, M, S::States>, phases: Option<S::Phases>, counts: Counts) {
         if S::HAS_SIGNALS {
             let start = self.mechanism.clone();
             self.mechanism.carry_signals(&start, next.t - self.now.t);
@@ -356,7 +356,7 @@ where
         if const { S::HAS_SIGNALS || !S::PHASES.is_empty() } {
             self.parameters = self.model().gripping(self.mechanism.parameters());
         }
-        self.now = next;
+        self.now = *next;
         self.counts = counts;
         self.stale = false;
         self.passed = false;
