@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use super::CamError;
-use super::follower::{Cam, Direction, Follower, Side};
+use super::follower::{Cam, Direction, Follower, Place, Side};
 use super::lift::{Flank, Lift};
 use super::limits::{Limit, Limits, Load, Size, examine, least_size};
 use crate::double_double::DoubleDouble;
@@ -73,8 +73,7 @@ fn solved_lift(cam: &Cam, theta: f64) -> f64 {
         [c * x - s * y, s * x + c * y]
     };
     // Two residuals: the follower's surface passes through the contour's point, and is tangent there.
-    let residual = |lift: f64, u: f64| {
-        let place = cam.place(u);
+    let residual = |lift: f64, place: &Place<f64>| {
         let point = rotate(place.contour, sigma * theta);
         let tangent = rotate(place.contour_rate, sigma * theta);
         let length = tangent[0].hypot(tangent[1]);
@@ -120,13 +119,19 @@ fn solved_lift(cam: &Cam, theta: f64) -> f64 {
     let is_rocker = matches!(cam.follower, Follower::Rocker { .. });
     let start = cam.place(theta);
     let (mut lift, mut u) = (if is_rocker { start.angle[0] } else { start.lift[0] } + 1e-4, theta + 2e-3);
-    for _ in 0..8 {
-        let [a, b] = residual(lift, u);
-        let h = 1e-6;
-        let partial =
-            |high: [f64; 2], low: [f64; 2]| [(high[0] - low[0]) / (2.0 * h), (high[1] - low[1]) / (2.0 * h)];
-        let by_lift = partial(residual(lift + h, u), residual(lift - h, u));
-        let by_u = partial(residual(lift, u + h), residual(lift, u - h));
+    let (mut by_lift, mut by_u) = ([0.0; 2], [0.0; 2]);
+    for iteration in 0..8 {
+        let here = cam.place(u);
+        let [a, b] = residual(lift, &here);
+        // The slopes of the third iteration are those of the solution to six digits.
+        if iteration < 3 {
+            let h = 1e-6;
+            let partial = |high: [f64; 2], low: [f64; 2]| {
+                [(high[0] - low[0]) / (2.0 * h), (high[1] - low[1]) / (2.0 * h)]
+            };
+            by_lift = partial(residual(lift + h, &here), residual(lift - h, &here));
+            by_u = partial(residual(lift, &cam.place(u + h)), residual(lift, &cam.place(u - h)));
+        }
         let determinant = by_lift[0] * by_u[1] - by_lift[1] * by_u[0];
         lift -= (a * by_u[1] - b * by_u[0]) / determinant;
         u -= (by_lift[0] * b - by_lift[1] * a) / determinant;
