@@ -1,10 +1,16 @@
-//! Errors that runs estimate, against the true ones: pendulums, contacts and friction.
+//! Errors that runs estimate, against the true ones: pendulums, contacts, friction, ready mechanisms.
 #![forbid(unsafe_code)]
 
 use mbs_runtime::dynamics::{
     DormandPrince5, DormandPrince8, Embedded, ErrorEstimate, Explicit, Projection, Simulation, Tolerance,
 };
 use mbs_runtime::{Dynamic, mechanism};
+use mechanisms::car_axis::CarAxis;
+use mechanisms::cart_pole::CartPole;
+use mechanisms::four_bar_mass::FourBarMassReleased;
+use mechanisms::heavy_top::HeavyTop;
+use mechanisms::n_four_bar::NFourBar;
+use mechanisms::n_four_bar_1::NFourBar1;
 
 mechanism! {
     /// A ball that bounces on a soft floor.
@@ -180,6 +186,7 @@ fn checked<S, I, const N: usize, const M: usize>(
         ratio(trusted.len().wrapping_sub(1)),
         ratio(trusted.len() / 2)
     );
+    assert!(trusted.len() + untrusted > 0, "{name}: no estimate");
     let is_outside = |ratio: &&(f64, f64)| !(BOUNDS[0] <= ratio.0 && ratio.0 <= BOUNDS[1]);
     let lost: Vec<&(f64, f64)> = trusted.iter().filter(is_outside).collect();
     assert!(lost.is_empty(), "{name}: {lost:?}");
@@ -203,6 +210,12 @@ fn estimates_are_trusted_within_their_bounds_alone() {
     check!("ball", Ball::<f64>::default(), 1.5);
     check!("stops", Stops::<f64>::default(), 2.0);
     check!("block", Block::<f64>::default(), 1.5);
+    check!("cart-pole", CartPole::<f64>::default(), 1.0);
+    check!("four-bar", FourBarMassReleased::<f64>::default(), 1.0);
+    check!("one loop", NFourBar1::<f64>::default(), 0.6);
+    check!("two loops", NFourBar::<f64>::default(), 0.6);
+    check!("heavy top", HeavyTop::<f64>::default(), 0.5);
+    check!("car axle", CarAxis::<f64>::default(), 0.5);
     let [trusted, count] = all;
     println!("{trusted} of {count} are trusted");
     assert!(2 * trusted > count, "{trusted} of {count} are trusted");
