@@ -155,7 +155,6 @@ fn translate_scene(scene: &Scene) -> Result<emit::rust::Translated<'_>, Diagnost
     };
     program::share_angles(&mut equations, &mut structure);
     program::take_roots(&mut equations, &mut structure);
-    program::invert_common_divisors(&mut equations, &mut structure);
     let program = program::order(&equations, &structure);
     Ok(emit::rust::Translated { scene, equations, structure, program })
 }

@@ -24,7 +24,9 @@ pub struct PushProgram {
 pub struct ContactProgram {
     /// All other forces.
     pub open: PushProgram,
-    /// One a contact: its code after the other forces.
+    /// Sines and cosines that several contacts use, after the other forces: for contacts that are evaluated alone.
+    pub shared: PushProgram,
+    /// One a contact: its code after both.
     pub contacts: Vec<PushProgram>,
 }
 
@@ -64,44 +66,48 @@ impl ContactRoots {
     }
 
     /// Before: functions that order the code of a function of the state, and of one after another. After: all in order; the first
-    /// section of each function has the values that contacts use among its results, and the sines and cosines that several share.
+    /// section of each function, and that of the shared values, have the values that contacts use among their results.
     pub fn order(
         &self,
         graph: &Graph,
         section: impl Fn(&[NodeId]) -> Section,
         behind: impl Fn(&Section, &[NodeId]) -> Section,
     ) -> ContactProgram {
-        let mut function = |index: usize| {
+        let function = |index: usize| {
             let roots = |all: &'_ [Vec<NodeId>; 4]| all.get(index).cloned().unwrap_or_default();
-            let open = section(&roots(&self.open));
-            let each = self.contacts.iter().map(|all| behind(&open, &roots(all)));
-            let shared = shared_angles(each);
-            let mut first = match shared.is_empty() {
-                true => open,
-                false => section(&[roots(&self.open), shared].concat()),
-            };
-            let computed: BTreeSet<NodeId> = first.computed().collect();
-            let contact = |all: &[Vec<NodeId>; 4]| {
+            let mut open = section(&roots(&self.open));
+            let shared = shared_angles(self.contacts.iter().map(|all| behind(&open, &roots(all))));
+            let mut shared = behind(&open, &shared);
+            let used = shared.lines.iter().flat_map(|line| line.operands(graph));
+            let mut used: BTreeSet<NodeId> = used.chain(shared.results.iter().copied()).collect();
+            // Contacts find the values of both.
+            let first = open.lines.len();
+            open.lines.append(&mut shared.lines);
+            let mut contacts = Vec::new();
+            for all in &self.contacts {
                 let roots = roots(all);
-                let code = behind(&first, &roots);
-                let used = code.lines.iter().flat_map(|line| line.operands(graph)).chain(roots);
-                let used: Vec<NodeId> = used.filter(|id| computed.contains(id)).collect();
-                (code, used)
-            };
-            let (contacts, used): (Vec<Section>, Vec<_>) = self.contacts.iter().map(contact).unzip();
-            first.results.extend(used.into_iter().flatten());
-            (first, contacts)
+                let code = behind(&open, &roots);
+                used.extend(code.lines.iter().flat_map(|line| line.operands(graph)).chain(roots));
+                contacts.push(code);
+            }
+            shared.lines = open.lines.split_off(first);
+            shared.results = shared.computed().filter(|id| used.contains(id)).collect();
+            let used: Vec<NodeId> = open.computed().filter(|id| used.contains(id)).collect();
+            open.results.extend(used);
+            (open, shared, contacts)
         };
-        let [force, force_q, force_qd, powers] = [0, 1, 2, 3].map(&mut function);
+        let [force, force_q, force_qd, powers] = [0, 1, 2, 3].map(function);
         let open = PushProgram { force: force.0, force_q: force_q.0, force_qd: force_qd.0, powers: powers.0 };
-        let contacts = force.1.into_iter().zip(force_q.1).zip(force_qd.1).zip(powers.1);
+        let shared =
+            PushProgram { force: force.1, force_q: force_q.1, force_qd: force_qd.1, powers: powers.1 };
+        let contacts = force.2.into_iter().zip(force_q.2).zip(force_qd.2).zip(powers.2);
         let contacts = contacts.map(|(((force, force_q), force_qd), powers)| PushProgram {
             force,
             force_q,
             force_qd,
             powers,
         });
-        ContactProgram { open, contacts: contacts.collect() }
+        ContactProgram { open, shared, contacts: contacts.collect() }
     }
 }
 

@@ -6,7 +6,6 @@ mod contacts;
 mod dynamics;
 pub mod motion;
 mod powers;
-mod quotients;
 mod schedule;
 mod stages;
 
@@ -21,7 +20,6 @@ pub use blocks::{BlockMethod, BlockProgram, System};
 pub use contacts::{ContactProgram, PushProgram};
 pub use dynamics::DynamicsProgram;
 pub use powers::take_roots;
-pub use quotients::invert_common_divisors;
 pub use schedule::{Angle, Assignment, FunctionDerivatives, Operations, Section};
 
 /// Everything that is emitted, in the order in which it is computed.

@@ -9,7 +9,6 @@ pub mod evaluate;
 pub mod graph;
 pub mod operations;
 mod powers;
-mod quotients;
 mod rules;
 pub mod sample_points;
 pub mod substitute;
@@ -19,7 +18,6 @@ pub use differentiate::{tangent, tangents};
 pub use graph::{Graph, Leaf, Node, NodeId, Stage};
 pub use operations::{Binary, Unary};
 pub use powers::take_roots;
-pub use quotients::{common_divisors, invert_divisors};
 
 #[cfg(test)]
 mod compositions_tests;

@@ -10,7 +10,7 @@ use super::substitute::{Images, replace_by};
 ///
 /// The rule comes last: the derivative of x √x is no number at 0, where that of x^1.5 is 0.
 pub fn take_roots(graph: &mut Graph, roots: &[NodeId]) -> Images {
-    replace_by(graph, roots, |graph, _, id| match graph.node(id) {
+    replace_by(graph, roots, |graph, id| match graph.node(id) {
         Node::Binary(Binary::Power, base, exponent) => power(graph, base, exponent),
         _ => None,
     })

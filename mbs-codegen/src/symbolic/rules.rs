@@ -21,7 +21,6 @@
 //! | 13 `reversed_differences_are_negations` | `y − x → −(x − y)` in products, sums and rule 10, where `x − y` is the older one | the sign of a zero result |
 //! | 14 `doubled_terms_add_first` | `(x + x) ± (y + y) → (x ± y) + (x ± y)` | nothing but an overflow on the way |
 //! | 15 `fractional_powers_take_roots` | `x^(n + ½) → x^n·√x`, `x^(n + ¼) → x^n·√√x`, `x^(n + ¾) → x^n·(√x·√√x)`, `x^−p → 1/x^p` for n up to 16, once all derivatives are there | the roundings of two roots and n products; the sign at −0; digits of results below the normal range; a power of −∞ |
-//! | 16 `common_divisors_are_inverted` | `x/d → x·(1/d)` where forces have three quotients by d or more, and rows none | one rounding; quotients by numbers below the normal range |
 
 use super::graph::{Graph, Node, NodeId, Stage};
 use super::operations::{Binary, Parity, Unary};

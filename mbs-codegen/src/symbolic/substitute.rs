@@ -39,17 +39,17 @@ pub fn replace(
     images
 }
 
-/// [`replace`], where `build` gets each node as it was, and with the images of its operands.
+/// [`replace`], where `build` gets each node with the images of its operands.
 pub fn replace_by(
     graph: &mut Graph,
     roots: &[NodeId],
-    build: impl Fn(&mut Graph, NodeId, NodeId) -> Option<NodeId>,
+    build: impl Fn(&mut Graph, NodeId) -> Option<NodeId>,
 ) -> Images {
     let nodes = graph.reachable(roots.iter().copied());
     let mut images = Images(vec![None; graph.len()]);
     for id in nodes {
         let image = rebuilt(graph, id, &images);
-        let image = build(graph, id, image).unwrap_or(image);
+        let image = build(graph, image).unwrap_or(image);
         if let Some(slot) = images.0.get_mut(id.index()) {
             *slot = Some(image);
         }

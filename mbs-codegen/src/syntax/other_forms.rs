@@ -288,7 +288,9 @@ pub fn takes_tolerance(parser: &mut Parser<'_>) -> bool {
             format!("write `, tolerance {value}`"),
         );
     }
-    parser.skip(comma + 1 + usize::from(sign));
+    parser.skip(comma);
+    parser.take_word("tolerance");
+    parser.skip(usize::from(sign));
     true
 }
 

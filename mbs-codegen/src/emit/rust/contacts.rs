@@ -122,9 +122,31 @@ impl Blocks<'_> {
         }
         let mut text = String::new();
         lets(section(&self.program.open), self.scope, &mut text);
+        text += &self.shared(section);
         text += &gaps;
         let _ = writeln!(text, "let mut __sum = {first};");
         block(&(text + &forces + "__sum"), self.runtime)
+    }
+
+    /// Values that several contacts use: 1 where none of these is evaluated, for then nobody reads them.
+    fn shared(&self, section: fn(&PushProgram) -> &Section) -> String {
+        let shared = section(&self.program.shared);
+        let uses = |program: &PushProgram| {
+            let lines = section(program).lines.iter();
+            lines.flat_map(|line| line.operands(self.scope.graph)).any(|id| shared.results.contains(&id))
+        };
+        let contacts = self.by_contact.contacts.iter().zip(&self.program.contacts);
+        let users = contacts.filter(|(_, program)| uses(program));
+        let users: Vec<String> = users.map(|(contact, _)| format!("{CLOSED}[{}]", contact.contact)).collect();
+        if users.is_empty() {
+            return String::new();
+        }
+        let names: Vec<String> = shared.results.iter().map(|id| self.scope.operand(*id)).collect();
+        let (count, names) = (names.len(), names.join(", "));
+        let mut text = format!("let [{names}] = if {} {{\n", users.join(" || "));
+        lets(shared, self.scope, &mut text);
+        let _ = writeln!(text, "[{names}]\n}} else {{\n[{}; {count}]\n}};", number(1.0));
+        text
     }
 
     /// The gap of a contact with the values that its force needs of the way there. Those of a contact that is not evaluated are 1: such a
