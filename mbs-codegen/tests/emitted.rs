@@ -85,12 +85,13 @@ fn force_of(text: &str) -> String {
 fn a_long_block_of_a_contact_ends_at_an_open_gap_and_a_short_one_has_no_test() {
     let force = force_of(CONTACTS);
     let blocks: Vec<&str> = force.split("if __p.1[").skip(1).collect();
-    let [gap_of_nose, rest] = blocks[..] else { panic!("two blocks: {force}") };
-    let (table, nose) =
-        rest.split_once("if !T::all(T::less(T::constant(0.0f64), ").expect("a test of the gap");
-    assert!(gap_of_nose.starts_with("1]") && rest.starts_with("0]"), "gaps come before forces: {force}");
-    assert!(table.contains("__sum[1] =") && !table.contains("::jet::<"), "{table}");
-    assert!(table.contains("] = __gap1;"), "{table}");
+    let [gap_of_nose, table, nose] = blocks[..] else { panic!("three blocks: {force}") };
+    let places = [gap_of_nose, table, nose].map(|block| &block[..2]);
+    assert_eq!(places, ["1]", "0]", "1]"], "gaps come before forces: {force}");
+    assert!(table.contains("__sum[1] =") && !table.contains("T::all("), "{table}");
+    let (kept, nose) =
+        nose.split_once("if !T::all(T::less(T::constant(0.0f64), ").expect("a test of the gap");
+    assert!(kept.contains("] = __gap1;"), "{kept}");
     let gap = nose.split_once(')').expect("the gap").0;
     assert!(
         gap_of_nose.contains(&format!("let {gap} =")) && gap_of_nose.contains("::jet::<"),
@@ -116,7 +117,11 @@ contact right { gap: y + sin(phi)*1m, stiffness: 1e6 [N/m] }
 contact rim { gap: y + sin(psi)*1m, stiffness: 1e6 [N/m] }
 ",
     );
-    let (open, blocks) = force.split_once("if __p.1[").expect("blocks");
-    assert_eq!([open, blocks].map(|part| part.matches("T::sin_cos([").count()), [1, 1], "{force}");
-    assert!(open.contains("T::sin_cos([__s.0[1]])") && blocks.contains("T::sin_cos([__s.0[2]])"), "{force}");
+    // Nothing is computed for contacts of which none is evaluated.
+    let (open, blocks) = force.split_once("if __p.1[0] || __p.1[1] {").expect("shared values");
+    assert!(!open.contains("T::sin_cos(["), "{open}");
+    let (shared, own) = blocks.split_once("} else {").expect("values that nobody reads");
+    assert!(shared.contains("T::sin_cos([__s.0[1]])"), "{shared}");
+    assert_eq!(own.matches("T::sin_cos([").count(), 1, "{own}");
+    assert!(own.contains("T::sin_cos([__s.0[2]])"), "{own}");
 }

@@ -108,7 +108,11 @@ impl Blocks<'_> {
                     let (text, names) = self.gap(contact.contact, &parted, section);
                     gaps += &text;
                     let (zero, gap) = (self.scope.or_zero(None), &parted.gap);
-                    let _ = writeln!(forces, "{{\nlet {names};\nif !T::all(T::less({zero}, {gap})) {{");
+                    let _ = writeln!(
+                        forces,
+                        "if {CLOSED}[{}] {{\nlet {names};\nif !T::all(T::less({zero}, {gap})) {{",
+                        contact.contact
+                    );
                     parted.after.iter().for_each(|line| print(line, self.scope, &mut forces));
                     forces += &(added + "}\n");
                 }
