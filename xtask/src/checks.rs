@@ -48,7 +48,7 @@ pub fn ci() -> Result<(), String> {
 }
 
 /// Cases of the first tier, one a kind of trouble: a program of all takes seven minutes of processor time to build.
-const FEW_CASES: &str = "change_point,drive_kink,friction_limit,lock_up,pendulum,stick_slip";
+const FEW_CASES: &str = "change_point,lock_up,pendulum";
 
 /// All of [`ci`], and checks that take long or need further tools.
 ///
