@@ -29,7 +29,7 @@ pub(super) fn jet<T: Scalar, const C: usize, const K: usize>(
 #[inline(always)]
 pub(super) fn distance<T: Scalar, X: Copy>(x: T, found: &T::Lanes<X>, origin: impl Fn(&X) -> f64) -> T {
     let leading = each(found, &origin);
-    if const { size_of::<T::Real>() == size_of::<f64>() } {
+    if T::Real::EPSILON.to_f64() <= f64::EPSILON {
         return x - leading;
     }
     let rest = each(found, |found| origin(found) - T::Real::constant(origin(found)).to_f64());
