@@ -13,7 +13,7 @@ use crate::syntax::ast::Name;
 /// Coefficient below which a sum of friction counts as none: without friction the deflection is divided by nothing.
 const NO_FRICTION: f64 = 1e-30;
 
-/// What bristles make of a friction.
+/// Force and deflection of a friction with bristles.
 #[derive(Clone, Copy)]
 pub struct Bristles {
     /// The force along s (N).
