@@ -6,12 +6,16 @@
 //!
 //! Writes a crate with the texts of all ready mechanisms whose rows fix them, and of random linkages that assemble and turn, and
 //! CasADi's C of each. The peers take the coarsest tolerance that is as accurate as the emitted code. `-- --only NAME,NAME` takes some,
-//! `-- --rounds 5` is a quick trial, `-- --docs` writes the table next to this file as well. Fails if a result is wrong, not if it is slow.
+//! `-- --rounds 5` is a quick trial, `-- --docs` writes the table next to this file as well. `-- --counts` counts instructions of four
+//! linkages, whose steps are typed by hand too. Fails if a result is wrong, not if it is slow.
 #![forbid(unsafe_code)]
 
+#[path = "linkages/counts.rs"]
+mod counts;
 #[path = "linkages/random.rs"]
 mod random;
 
+use std::collections::BTreeMap;
 use std::env;
 use std::fmt::Write;
 use std::fs;
@@ -26,6 +30,15 @@ use mechanisms::CATALOGUE;
 const REQUIREMENTS: &str = include_str!("../proofs/peers/requirements.txt");
 const PEERS: &str = include_str!("linkages/peers.py");
 const PROGRAM: &str = include_str!("linkages/program.rs");
+const BY_HAND: &str = include_str!("linkages/by_hand.rs");
+
+/// Linkages whose steps are typed by hand too, with the name of their type there.
+const TYPED: [(&str, &str); 4] = [
+    ("stephenson", "Stephenson"),
+    ("jansen", "Jansen"),
+    ("four_bar", "FourBar"),
+    ("slider_crank", "SliderCrank"),
+];
 
 /// Random linkages.
 const RANDOM: usize = 20;
@@ -35,6 +48,14 @@ const LARGEST_ERROR: f64 = 1e-10;
 
 /// Largest linkage that a dense peer is worth being compared with.
 const LARGEST: usize = 24;
+
+/// Steps whose instructions are counted, and their names in the table.
+const SUBJECTS: [(&str, &str); 4] = [
+    ("emitted", "emitted"),
+    ("constants", "emitted, dimensions as `const`"),
+    ("hand", "by hand"),
+    ("peer", "CasADi's C, LU"),
+];
 
 /// Linkages whose steps are timed with constants in place of parameters too.
 const WITH_CONSTANTS: [&str; 4] = ["four_bar", "slider_crank", "stephenson", "jansen"];
@@ -82,12 +103,16 @@ fn main() -> ExitCode {
     };
     let rounds = after("--rounds").map_or("31", String::as_str);
     let only: Option<Vec<&str>> = after("--only").map(|names| names.split(',').collect());
-    match measured(rounds, only.as_deref()) {
+    let (name, made) = match arguments.iter().any(|argument| argument == "--counts") {
+        true => ("linkages_counts.md", counted(rounds)),
+        false => ("linkages.md", measured(rounds, only.as_deref())),
+    };
+    match made {
         Ok(text) => {
             println!("{text}");
-            let mut files = vec![Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("bench/linkages.md")];
+            let mut files = vec![Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("bench").join(name)];
             if arguments.iter().any(|argument| argument == "--docs") {
-                files.push(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/linkages.md")));
+                files.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("benches").join(name));
             }
             for file in files {
                 let made = fs::create_dir_all(file.with_file_name("")).and_then(|()| fs::write(&file, &text));
@@ -102,17 +127,56 @@ fn main() -> ExitCode {
     }
 }
 
+/// Instructions of the steps that are typed by hand too, of the emitted ones and of the peer's, and their times in `rounds`.
+fn counted(rounds: &str) -> Result<String, String> {
+    let mut linkages = ready();
+    linkages.retain(|linkage| TYPED.iter().any(|(name, _)| *name == linkage.name));
+    let program = build(&linkages, "linkages_counts", "x86-64-v3")?;
+    let mut rows = Vec::new();
+    for (name, _) in TYPED {
+        for (subject, words) in SUBJECTS {
+            rows.push((name, words, counts::parts(&program, name, subject, BY_HAND)?));
+        }
+    }
+    let lines = tools::output(Command::new(program).arg(rounds), "it was built a moment ago")?;
+    let (mut peers, mut typed) = (BTreeMap::new(), BTreeMap::new());
+    for (name, rest) in lines.lines().filter_map(|line| line.split_once(' ')) {
+        let numbers =
+            |text: &str| -> Vec<f64> { text.split(' ').filter_map(|word| word.parse().ok()).collect() };
+        if let Some(hand) = rest.strip_prefix("hand ") {
+            if let [error, ratio] = numbers(hand)[..]
+                && error < LARGEST_ERROR
+            {
+                typed.insert(name, ratio);
+            }
+        } else if let [_, _, _, step, ..] = numbers(rest)[..] {
+            peers.insert(name, step);
+        }
+    }
+    let mut times = Vec::new();
+    for (name, _) in TYPED {
+        match (peers.get(name), typed.get(name)) {
+            (Some(peer), Some(hand)) => times.push((name, [*peer, *hand])),
+            _ => return Err(format!("{name}: no step by hand that is right\n{lines}")),
+        }
+    }
+    Ok(counts::table(&rows, &times))
+}
+
 fn measured(rounds: &str, only: Option<&[&str]>) -> Result<String, String> {
     let mut linkages = ready();
     linkages.extend(random::texts(RANDOM).into_iter().map(|(name, text)| of_random(&name, text)));
     linkages.retain(|linkage| only.is_none_or(|only| only.contains(&linkage.name.as_str())));
-    let program = build(&linkages)?;
+    let program = build(&linkages, "linkages", "native")?;
     let lines = tools::output(Command::new(program).arg(rounds), "it was built a moment ago")?;
     let (mut found, mut constants) = (Vec::new(), Vec::new());
     let (mut faults, mut notes) = (Vec::new(), String::new());
     for line in lines.lines() {
         let (name, rest) = line.split_once(' ').unwrap_or((line, ""));
         let Some(linkage) = linkages.iter().find(|linkage| linkage.name == name) else { continue };
+        if rest.starts_with("hand ") {
+            continue;
+        }
         if let Some(ratio) = rest.strip_prefix("parameters ") {
             constants.push((linkage, ratio.parse().unwrap_or(f64::NAN)));
             continue;
@@ -179,9 +243,9 @@ fn of((name, type_name): (String, &str), text: String, values: Vec<f64>, duratio
     }
 }
 
-/// Writes the crate and the peers' C, and builds both for this processor.
-fn build(linkages: &[Linkage]) -> Result<PathBuf, String> {
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("linkages");
+/// Writes the crate and the peers' C to a `folder`, and builds both for `processor`; for another than this one with lines of the code.
+fn build(linkages: &[Linkage], folder: &str, processor: &str) -> Result<PathBuf, String> {
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     let sources = directory.join("peers");
     let wrong = |error: std::io::Error| format!("{}: {error}", directory.display());
     let _ = fs::remove_dir_all(&sources);
@@ -210,31 +274,55 @@ fn build(linkages: &[Linkage]) -> Result<PathBuf, String> {
     let lock = "tests/proofs/Cargo.lock";
     fs::copy(workspace.join(lock), directory.join("Cargo.lock")).map_err(wrong)?;
     fs::write(directory.join("src/main.rs"), program(linkages)).map_err(wrong)?;
+    fs::write(directory.join("src/by_hand.rs"), BY_HAND).map_err(wrong)?;
     eprintln!("building");
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["build", "--release", "--quiet"]).current_dir(&directory);
-    cargo.env("CARGO_TARGET_DIR", directory.join("target")).env("RUSTFLAGS", "-C target-cpu=native");
+    let triple = tools::output(Command::new("rustc").args(["--print", "host-tuple"]), "cargo has it")?;
+    // With a target named, the flags are not those of the macro.
+    let mut flags = format!("-C target-cpu={processor}");
+    if processor != "native" {
+        // Addresses of what is counted are those of the file.
+        flags += " -C relocation-model=static";
+        cargo.env("CARGO_PROFILE_RELEASE_DEBUG", "line-tables-only");
+    }
+    cargo.args(["--target", triple.trim()]).env("RUSTFLAGS", flags);
+    cargo.env("CARGO_TARGET_DIR", directory.join("target")).env("PEERS_PROCESSOR", processor);
     tools::output(&mut cargo, "the bench needs cargo, which runs it")?;
-    Ok(directory.join("target/release/linkages"))
+    Ok(directory.join("target").join(triple.trim()).join("release/linkages"))
 }
 
 /// Compiles the C code.
 const BUILD: &str = r#"fn main() {
     println!("cargo::rerun-if-changed=peers");
+    let processor = std::env::var("PEERS_PROCESSOR").expect("the bench sets it");
     let files = std::fs::read_dir("peers").expect("the directory").map(|entry| entry.expect("an entry").path());
     let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "c"));
-    cc::Build::new().opt_level(3).flag("-march=native").warnings(false).files(files).compile("peers");
+    cc::Build::new().opt_level(3).flag(format!("-march={processor}")).warnings(false).files(files).compile("peers");
 }
 "#;
 
 fn program(linkages: &[Linkage]) -> String {
     let (mut calls, mut functions, mut modules) = (String::new(), String::new(), String::new());
+    let mut counts = String::new();
     for Linkage { name, type_name, text, duration, coordinates, .. } in linkages {
         let _ = writeln!(
             calls,
             "    linkage::<{name}::{type_name}, {coordinates}, {{ <{name}::{type_name} as Mechanism<f64, {coordinates}, {coordinates}>>::SPARSITY.len() }}>(\"{name}\", \
              Peer {{ all: {name}_all, rows: {name}_rows, gamma: {name}_gamma }}, {duration:?}, rounds);"
         );
+        if let Some((_, typed)) = TYPED.iter().find(|(typed, _)| typed == name) {
+            let types = format!("by_hand::{typed}, {coordinates}");
+            let _ = writeln!(
+                calls,
+                "    by_hand_too::<{name}::{type_name}, {types}>(\"{name}\", {duration:?}, rounds);"
+            );
+            let _ = writeln!(
+                counts,
+                "        if name == \"{name}\" {{ counted::<{name}::{type_name}, {name}_const::{type_name}, {types}>(Peer {{ all: {name}_all, rows: {name}_rows, gamma: {name}_gamma }}, \
+                 {duration:?}, asked); }}"
+            );
+        }
         for part in ["all", "rows", "gamma"] {
             let _ = writeln!(
                 functions,
@@ -252,7 +340,11 @@ fn program(linkages: &[Linkage]) -> String {
             );
         }
     }
-    PROGRAM.replace("// LINKAGES\n", &calls).replace("// FUNCTIONS\n", &functions) + &modules
+    PROGRAM
+        .replace("// LINKAGES\n", &calls)
+        .replace("// COUNTS\n", &counts)
+        .replace("// FUNCTIONS\n", &functions)
+        + &modules
 }
 
 /// The text with constants in place of parameters, and without presets and span, which name parameters.

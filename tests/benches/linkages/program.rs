@@ -3,6 +3,9 @@
 use std::ffi::{c_int, c_longlong};
 use std::hint::black_box;
 
+mod by_hand;
+
+use by_hand::ByHand;
 use mbs_runtime::{Kinematic, Mechanism, Stepper};
 use nalgebra::{Const, DimMin, SMatrix, SVector};
 
@@ -174,6 +177,28 @@ fn difference<const N: usize>(a: &[Motion<N>], b: &[Motion<N>], duration: f64) -
     largest
 }
 
+/// Errors of the emitted motion `own` and of the peer's, and the coarsest tolerances of the peer's rows at which it is as accurate.
+fn accuracy<const N: usize>(
+    (peer, first, scales): (Peer, Motion<N>, &[f64; N]),
+    own: &[Motion<N>],
+    duration: f64,
+) -> ([f64; 2], [f64; N]) {
+    let h = duration / f64::from(STEPS);
+    let motion = |tolerance: f64| -> Vec<Motion<N>> {
+        let (mut motion, tolerances) = (first, scales.map(|scale| tolerance * scale));
+        let mut through = |k| {
+            step::<Lu<N>, N>(peer, h, &tolerances, f64::from(k) * h, &mut motion);
+            motion
+        };
+        (1..=STEPS).map(&mut through).collect()
+    };
+    let truth = motion(0.0);
+    let error = difference(&truth, own, duration);
+    let equal = |tolerance: &&f64| difference(&truth, &motion(**tolerance), duration) <= RIGHT.max(EQUAL * error);
+    let tolerance = TOLERANCES.iter().find(equal).copied().unwrap_or(1e-15);
+    ([error, difference(&truth, &motion(tolerance), duration)], scales.map(|scale| tolerance * scale))
+}
+
 type Case = (f64, Box<dyn FnMut()>);
 
 fn linkage<S, const N: usize, const Z: usize>(name: &str, peer: Peer, duration: f64, rounds: usize)
@@ -201,20 +226,7 @@ where
         own.push(of(&stepper));
     }
     let scales = mechanism.row_scales(&parameters).map(f64::abs);
-    let motion = |tolerance: f64| -> Vec<Motion<N>> {
-        let (mut motion, tolerances) = (first, scales.map(|scale| tolerance * scale));
-        let mut through = |k| {
-            step::<Lu<N>, N>(peer, h, &tolerances, time(k), &mut motion);
-            motion
-        };
-        (1..=STEPS).map(&mut through).collect()
-    };
-    let truth = motion(0.0);
-    let error = difference(&truth, &own, duration);
-    let equal = |tolerance: &&f64| difference(&truth, &motion(**tolerance), duration) <= RIGHT.max(EQUAL * error);
-    let tolerance = TOLERANCES.iter().find(equal).copied().unwrap_or(1e-15);
-    let tolerances = scales.map(|scale| tolerance * scale);
-    let peers_error = difference(&truth, &motion(tolerance), duration);
+    let ([error, peers_error], tolerances) = accuracy((peer, first, &scales), &own, duration);
 
     let states: Vec<(Motion<N>, f64)> =
         own.iter().zip(1..).map(|(motion, k)| (*motion, time(k))).step_by(STEPS as usize / STATES).collect();
@@ -285,6 +297,113 @@ where
     let times = timed(&mut [(f64::from(STEPS), parameters), (f64::from(STEPS), constants)], rounds);
     let least = |case: usize| times[case].iter().copied().fold(f64::INFINITY, f64::min);
     println!("{name} parameters {}", least(0) / least(1));
+}
+
+/// Error of a step by hand, and time of an emitted step over its time, in rounds in which both take turns.
+fn by_hand_too<S, H, const N: usize>(name: &str, duration: f64, rounds: usize)
+where
+    S: Kinematic<f64, N> + Default + Copy + 'static,
+    H: ByHand<N> + Default + 'static,
+    Stepper<S, f64, N>: Clone,
+{
+    let Some((own, typed)) = motion::<S, N>(duration).zip(hand::<S, H, N>(duration)) else {
+        return println!("{name} by hand: it does not assemble");
+    };
+    let error = hands_error::<S, H, N>(duration).unwrap_or(f64::NAN);
+    let times = timed(&mut [(f64::from(STEPS), own), (f64::from(STEPS), typed)], rounds);
+    let mut ratios: Vec<f64> = times[0].iter().zip(&times[1]).map(|(own, hand)| own / hand).collect();
+    ratios.sort_by(f64::total_cmp);
+    println!("{name} hand {error:e} {}", ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN));
+}
+
+/// State of the assembled mechanism.
+fn first<S, const N: usize>() -> Option<Motion<N>>
+where
+    S: Kinematic<f64, N> + Default + Copy,
+{
+    let mechanism = S::default();
+    let start = Stepper::assemble(mechanism, mechanism.guess(&mechanism.parameters()), 0.0).ok()?;
+    Some(Motion { q: *start.q(), qd: *start.qd(), qdd: *start.qdd() })
+}
+
+/// The steps of a motion, typed by hand.
+fn hand<S, H, const N: usize>(duration: f64) -> Option<Box<dyn FnMut()>>
+where
+    S: Kinematic<f64, N> + Default + Copy + 'static,
+    H: ByHand<N> + Default + 'static,
+{
+    let (first, h) = (first::<S, N>()?, 0.999 * duration / f64::from(STEPS));
+    Some(Box::new(move || {
+        let (mut motion, linkage) = (*black_box(&first), *black_box(&H::default()));
+        for k in 1..=STEPS {
+            black_box(linkage.step(f64::from(k) * h, h, &mut motion));
+        }
+        black_box(&motion);
+    }))
+}
+
+/// Largest difference of the steps by hand from those of the emitted code; `None` where a step is refused.
+fn hands_error<S, H, const N: usize>(duration: f64) -> Option<f64>
+where
+    S: Kinematic<f64, N> + Default + Copy,
+    H: ByHand<N> + Default,
+{
+    let (mechanism, h) = (S::default(), 0.999 * duration / f64::from(STEPS));
+    let mut stepper = Stepper::assemble(mechanism, mechanism.guess(&mechanism.parameters()), 0.0).ok()?;
+    let (mut motion, linkage) = (first::<S, N>()?, H::default());
+    let (mut emitted, mut typed) = (Vec::new(), Vec::new());
+    for k in 1..=STEPS {
+        let t = f64::from(k) * h;
+        stepper.advance_to(t).ok()?;
+        linkage.step(t, h, &mut motion).then_some(())?;
+        emitted.push(Motion { q: *stepper.q(), qd: *stepper.qd(), qdd: *stepper.qdd() });
+        typed.push(motion);
+    }
+    Some(difference(&emitted, &typed, 0.999 * duration))
+}
+
+/// Steps of a peer, as accurate as the emitted ones.
+fn peers<S, const N: usize>(peer: Peer, duration: f64) -> Option<Box<dyn FnMut()>>
+where
+    S: Kinematic<f64, N> + Mechanism<f64, N, N> + Default + Copy + 'static,
+{
+    let (mechanism, h) = (S::default(), 0.999 * duration / f64::from(STEPS));
+    let first = first::<S, N>()?;
+    let scales = mechanism.row_scales(&mechanism.parameters()).map(f64::abs);
+    let mut stepper = Stepper::assemble(mechanism, mechanism.guess(&mechanism.parameters()), 0.0).ok()?;
+    let mut own = Vec::new();
+    for k in 1..=STEPS {
+        stepper.advance_to(f64::from(k) * h).ok()?;
+        own.push(Motion { q: *stepper.q(), qd: *stepper.qd(), qdd: *stepper.qdd() });
+    }
+    let (_, tolerances) = accuracy((peer, first, &scales), &own, 0.999 * duration);
+    Some(Box::new(move || {
+        let mut motion = *black_box(&first);
+        for k in 1..=STEPS {
+            step::<Lu<N>, N>(peer, h, &tolerances, f64::from(k) * h, &mut motion);
+        }
+        black_box(&motion);
+    }))
+}
+
+/// Repeats the steps of `subject` so many times, for a counter of instructions.
+fn counted<S, C, H, const N: usize>(peer: Peer, duration: f64, [subject, count]: [&str; 2])
+where
+    S: Kinematic<f64, N> + Mechanism<f64, N, N> + Default + Copy + 'static,
+    C: Kinematic<f64, N> + Default + Copy + 'static,
+    H: ByHand<N> + Default + 'static,
+    Stepper<S, f64, N>: Clone,
+    Stepper<C, f64, N>: Clone,
+{
+    let run = match subject {
+        "emitted" => motion::<S, N>(duration),
+        "constants" => motion::<C, N>(duration),
+        "hand" => hand::<S, H, N>(duration),
+        _ => peers::<S, N>(peer, duration),
+    };
+    if let (Some(mut run), Ok(count)) = (run, count.parse::<u32>()) {
+        (0..count).for_each(|_| run());
+    }
 }
 
 /// The steps of a motion.
@@ -361,6 +480,13 @@ fn processor_time() -> f64 {
 }
 
 fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [name, subject, count] = &arguments[..] {
+        let asked = [subject.as_str(), count.as_str()];
+        // COUNTS
+        let _ = (name, asked);
+        return;
+    }
     let rounds = std::env::args().nth(1).and_then(|rounds| rounds.parse().ok()).unwrap_or(31);
     // LINKAGES
 }
