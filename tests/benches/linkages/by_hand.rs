@@ -210,7 +210,18 @@ impl Default for Stephenson {
     fn default() -> Self {
         let (point, pivot) = (V(0.075, -0.08), V(-0.15, 0.16));
         let reciprocals = [1.0 / 0.25, 1.0 / 0.3];
-        Stephenson { d: 0.3, a: 0.25, b: 0.15, g: 0.25, r: 0.05, l: 0.3, point, pivot, omega: TAU, reciprocals }
+        Stephenson {
+            d: 0.3,
+            a: 0.25,
+            b: 0.15,
+            g: 0.25,
+            r: 0.05,
+            l: 0.3,
+            point,
+            pivot,
+            omega: TAU,
+            reciprocals,
+        }
     }
 }
 
@@ -301,8 +312,7 @@ pub struct Jansen {
 
 impl Default for Jansen {
     fn default() -> Self {
-        let bars: [f64; 10] =
-            [0.0415, 0.05, 0.0393, 0.0619, 0.0401, 0.0558, 0.0367, 0.0394, 0.049, 0.0657];
+        let bars: [f64; 10] = [0.0415, 0.05, 0.0393, 0.0619, 0.0401, 0.0558, 0.0367, 0.0394, 0.049, 0.0657];
         Jansen { squares: bars.map(|bar| bar * bar), pivot: V(-0.038, -0.0078), m: 0.015, omega: TAU }
     }
 }
