@@ -1,6 +1,6 @@
 //! Two tiers of checks: a change must pass the first, a release the second.
 
-use crate::shell::{command, exists, need, output, root, step};
+use crate::shell::{command, exists, install, need, output, root, step};
 use crate::{browser, costs, documents, fuzz, growth, instructions, lines, planted};
 
 /// The oldest compiler that the workspace names.
@@ -129,6 +129,11 @@ pub fn bench(options: &[&str]) -> Result<(), String> {
     for (package, bench) in BENCHES {
         let mut command = command("cargo", &["bench", "-p", package, "--bench", bench, "--"]);
         step(command.args(options).current_dir(root()))?;
+    }
+    if cfg!(target_arch = "x86_64") {
+        install("valgrind", "valgrind")?;
+        let counts = ["bench", "-p", "mbs-tests", "--bench", "linkages", "--", "--counts"];
+        step(command("cargo", &counts).args(options).current_dir(root()))?;
     }
     Ok(())
 }
