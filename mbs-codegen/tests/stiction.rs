@@ -1,4 +1,4 @@
-//! Friction that sticks: the size of its code, and what texts without it have of it.
+//! Friction that sticks and rigid contacts: the size of their code, what texts without them have of it, and messages.
 #![forbid(unsafe_code)]
 
 use proc_macro2::{TokenStream, TokenTree};
@@ -32,7 +32,62 @@ fn code_grows_in_proportion_to_the_number_of_frictions() {
     let (first, few, many) = (each(one, none, 1), each(four, one, 3), each(twelve, four, 8));
     assert!(few <= first && many <= 1.02 * few && few <= 1.02 * many, "{first} {few} {many}");
     let plain = expand(0).to_string();
-    for word in ["FRICTIONS", "Grip", "friction_rows", "grips"] {
+    for word in ["SET_VALUED", "Grip", "set_valued_rows", "grips"] {
         assert!(!plain.contains(word) && expand(1).to_string().contains(word), "{word}");
+    }
+}
+
+/// Balls above a floor, the first `count` of them with a rigid contact.
+fn balls(count: usize) -> String {
+    let mut text = String::from(
+        "/// Balls in a row.\npub mechanism Row;\ncoord y: [m; 24] = 1;\nfor i in 0..24 { body ball { mass: 1kg, com: [i*1m, y[i]] } }\n",
+    );
+    for index in 0..count {
+        text += &format!("contact floor{index} {{ gap: y[{index}], restitution: 0.5 }}\n");
+    }
+    text
+}
+
+#[test]
+fn code_grows_in_proportion_to_the_number_of_rigid_contacts() {
+    let expand = |count: usize| mbs_codegen::expand_source(&balls(count)).expect("it expands");
+    let [one, four, twelve, all] = [1, 4, 12, 24].map(|count| tokens(expand(count)));
+    let each = |more: usize, less: usize, count: usize| (more - less) as f64 / count as f64;
+    let (few, some, many) = (each(four, one, 3), each(twelve, four, 8), each(all, twelve, 12));
+    assert!(some <= 1.02 * few && many <= 1.02 * few && few <= 1.02 * many, "{few} {some} {many}");
+    let plain = expand(0).to_string();
+    for word in ["SET_VALUED", "Grip", "set_valued_rows", "restitution"] {
+        assert!(!plain.contains(word) && expand(1).to_string().contains(word), "{word}");
+    }
+}
+
+#[test]
+fn wrong_rigid_contacts_are_named() {
+    let said = |contacts: &str| {
+        let text = format!(
+            "/// Ball.\npub mechanism B;\nparam e: 1 = 1.5;\ncoord y: m = 1;\nbody ball {{ mass: 1kg, com: [0, y] }}\n{contacts}"
+        );
+        mbs_codegen::expand_source(&text).expect_err("it is wrong")
+    };
+    for (contacts, message) in [
+        (
+            "contact c { gap: y, restitution: 0.5, damping: 0.1 }",
+            "`damping` is of contacts with a `stiffness`",
+        ),
+        (
+            "contact c { gap: y, restitution: 0.5, approach: 1 }",
+            "`approach` is of contacts with a `stiffness`",
+        ),
+        ("contact c { gap: y, restitution: 0.5, bound: 10 }", "`bound` is of contacts with a `stiffness`"),
+        ("contact c { gap: y, restitution: e }", "`1 - restitution` of `c` is negative"),
+        ("contact c { gap: y, restitution: -0.1 }", "`restitution` of `c` is negative"),
+        ("contact c { gap: y }", "`c` has no field `stiffness`"),
+        (
+            "contact c { gap: y, restitution: 0.5 }\nforce f: [force(c), 0] on [0, y];",
+            "`f` needs the force of a friction that sticks, or of a rigid contact",
+        ),
+    ] {
+        let found = said(contacts);
+        assert!(found.contains(message), "{contacts}: {found}");
     }
 }

@@ -1,12 +1,13 @@
-//! Contact → force along its gap.
+//! Contact → force along its gap, or row that closes.
 
 use proc_macro2::Span;
 
-use super::dynamics::{Action, Contact};
+use super::dynamics::{Action, Contact, SetValued, Sticking};
 use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
 use super::forces_by_name::Force as Seen;
 use super::masses_and_forces::Given;
+use super::non_negative::{Least, NonNegative};
 use super::resolver::Resolver;
 use super::value::{Fault, Reach};
 use crate::symbolic::{Binary, Unary};
@@ -17,6 +18,9 @@ impl Resolver<'_> {
     ///
     /// Source: Hunt & Crossley 1975; n = 3/2 is Hertz's contact of spheres.
     pub(super) fn contact(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
+        if given.value("stiffness").is_none() {
+            return self.rigid_contact(name, full, given);
+        }
         let field = |field: &str| given.scalar(field).ok_or(Fault);
         let (gap, stiffness) = (field("gap")?, field("stiffness")?);
         let power = match (given.scalar("exponent"), given.scalar("depth")) {
@@ -46,6 +50,35 @@ impl Resolver<'_> {
         let dynamics = self.dynamics();
         let force_index = dynamics.forces.len();
         dynamics.contacts.push(Contact { name: full.clone(), force: force_index, gap, bound, span });
+        self.names.seen.define(&name.text, Seen::Contact { gap, force });
+        self.force(name, full, Action::Work(vec![(force, gap)]));
+        Ok(())
+    }
+
+    /// A row that holds while its force pushes, and closes with an impact: a contact without stiffness.
+    fn rigid_contact(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
+        for field in ["exponent", "depth", "damping", "approach", "bound"] {
+            if let Some(value) = given.value(field) {
+                let message =
+                    format!("`{field}` is of contacts with a `stiffness`, and `{}` has none", name.text);
+                let help =
+                    "write `stiffness: …`, or leave it out: a rigid contact has a gap and a restitution";
+                return Err(self.fault(value.span, message, help));
+            }
+        }
+        let field = |field: &str| given.scalar(field).ok_or(Fault);
+        let (gap, restitution, span) = (field("gap")?, field("restitution")?, name.span);
+        let index = self.dynamics().sticking.len();
+        let (force, rest) = self.elaborate(Reach::Force, |work| {
+            let one = work.expressions.push(Node::Number(1.0));
+            let rest = work.push_binary(Binary::Subtract, one, restitution, span)?;
+            Ok::<_, Fault>((work.expressions.push(Node::Holding(index)), rest))
+        })?;
+        let (field, of) = ("1 - restitution", name.text.clone());
+        let dynamics = self.dynamics();
+        dynamics.signed.push(NonNegative { field, least: Least::Zero, of, value: rest, span });
+        let law = SetValued::Contact { restitution };
+        dynamics.sticking.push(Sticking { name: full.clone(), along: gap, law, span });
         self.names.seen.define(&name.text, Seen::Contact { gap, force });
         self.force(name, full, Action::Work(vec![(force, gap)]));
         Ok(())

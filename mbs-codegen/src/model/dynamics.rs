@@ -23,7 +23,7 @@ pub struct Dynamics {
     pub forces: Vec<Force>,
     /// Contacts, in the order of the text.
     pub contacts: Vec<Contact>,
-    /// Frictions with stiction, in the order of the text.
+    /// Frictions with stiction and rigid contacts, in the order of the text.
     pub sticking: Vec<Sticking>,
     /// Energies that `potential` adds (J).
     pub potentials: Vec<Id>,
@@ -137,17 +137,32 @@ pub struct Contact {
     pub span: Span,
 }
 
-/// A friction whose force is set-valued at rest.
+/// A force that is set-valued: a friction at rest, or a contact without stiffness.
 #[derive(Debug)]
 pub struct Sticking {
     /// Its name.
     pub name: String,
-    /// Length (m).
+    /// Length, or gap (m).
     pub along: Id,
-    /// Largest force (N) with which it sticks.
-    pub limit: Id,
+    /// The set of its forces.
+    pub law: SetValued,
     /// The declaring token.
     pub span: Span,
+}
+
+/// The set of forces of a row.
+#[derive(Clone, Copy, Debug)]
+pub enum SetValued {
+    /// Up to a largest force (N) to both sides.
+    Friction {
+        /// Largest force.
+        limit: Id,
+    },
+    /// Any force that pushes, with impacts of a coefficient of restitution.
+    Contact {
+        /// Coefficient of restitution.
+        restitution: Id,
+    },
 }
 
 /// The body that a point is one of: `A of rod`.

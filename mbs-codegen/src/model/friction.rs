@@ -1,6 +1,6 @@
 //! Friction laws → forces along a length.
 
-use super::dynamics::{Action, Sticking};
+use super::dynamics::{Action, SetValued, Sticking};
 use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
 use super::forces_by_name::Force as Seen;
@@ -29,7 +29,8 @@ impl Resolver<'_> {
             let [limit, force, sliding] = self.elaborate(Reach::Force, |work| {
                 set_valued(work, index, [along, normal, coefficient, most], given, name)
             })?;
-            self.dynamics().sticking.push(Sticking { name: full.clone(), along, limit, span });
+            let law = SetValued::Friction { limit };
+            self.dynamics().sticking.push(Sticking { name: full.clone(), along, law, span });
             [force, sliding]
         } else {
             let speed = field("speed")?;
@@ -52,6 +53,7 @@ impl Resolver<'_> {
     }
 
     /// Reports forces and rates made of a force that holds: it is what the balance with all other forces leaves, so these cannot need it.
+    /// That of a rigid contact is one.
     pub(super) fn check_holding(&mut self) {
         let Some(dynamics) = self.model.dynamics.as_ref().filter(|dynamics| !dynamics.sticking.is_empty())
         else {
@@ -77,19 +79,24 @@ impl Resolver<'_> {
             if parts.into_iter().flatten().any(|part| holding(part, &|name| name != force.name)) {
                 faults.push((
                     force.span,
-                    format!("`{}` needs the force of a friction that sticks", force.name),
+                    format!(
+                        "`{}` needs the force of a friction that sticks, or of a rigid contact",
+                        force.name
+                    ),
                 ));
             }
         }
         for state in &dynamics.states {
             if state.rate.is_some_and(|rate| holding(rate, &|_| true)) {
-                let message =
-                    format!("the rate of `{}` needs the force of a friction that sticks", state.name);
+                let message = format!(
+                    "the rate of `{}` needs the force of a friction that sticks, or of a rigid contact",
+                    state.name
+                );
                 faults.push((state.span, message));
             }
         }
         for (span, message) in faults {
-            let help = "outputs know the force that holds, forces and rates the `power` alone; or write `speed` in place of `sticks`";
+            let help = "outputs know the force that holds, forces and rates the `power` alone; or write `speed` in place of `sticks`, and `stiffness` in the contact";
             self.diagnostics.report(span, message, help);
         }
     }

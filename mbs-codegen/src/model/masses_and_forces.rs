@@ -237,14 +237,18 @@ impl Resolver<'_> {
             }
             match self.field(field, *kind) {
                 Ok(value) => {
-                    let value = self.signed(known_name, name, value);
+                    let rigid = kind_of == Element::Contact && !is_given("stiffness");
+                    let value = self.signed(known_name, name, (value, rigid));
                     given.0.push((known_name, value));
                 }
                 Err(Fault) => faulty = true,
             }
         }
         // Friction with stiction or bristles needs no speed at which it is smooth.
-        let spared = |name: &str| name == "speed" && (is_given("sticks") || is_given("bristles"));
+        let spared = |name: &str| {
+            name == "speed" && (is_given("sticks") || is_given("bristles"))
+                || name == "stiffness" && is_given("restitution")
+        };
         let is_missing = |name: &str| !is_given(name) && !misspelled.contains(&name) && !spared(name);
         for (missing, ..) in known.iter().filter(|(known, _, needed)| *needed && is_missing(known)) {
             let (message, help) = match (kind_of, *missing) {
@@ -266,8 +270,10 @@ impl Resolver<'_> {
 
     /// Keeps values that have a least one, to be checked with all others; entries of an inertia off its diagonal have none. The
     /// law goes on with 1 in place of a number that it cannot divide by, for quotients of numbers are computed at once.
-    fn signed(&mut self, field: &'static str, name: &Name, mut value: Value) -> Value {
+    fn signed(&mut self, field: &'static str, name: &Name, (mut value, rigid): (Value, bool)) -> Value {
         let Some(least) = Least::of(field) else { return value };
+        // Of a rigid contact nothing divides by it.
+        let least = if rigid && field == "restitution" { Least::Zero } else { least };
         let (of, span) = (name.text.clone(), value.span);
         for item in value.items.iter_mut().take(3) {
             let signed = NonNegative { field, least, of: of.clone(), value: item.id, span };

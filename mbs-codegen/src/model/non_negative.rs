@@ -100,9 +100,7 @@ fn wrong(signed: &NonNegative, value: f64) -> Option<Diagnostic> {
         "depth" => "the stiffness is force over depth there: write a depth that is reached, `depth: 1mm`",
         "exponent" => "the force rises with the depth to this power: `exponent: 1.5` for spheres",
         "restitution" => "a contact without any rebound has a small one: `restitution: 0.01`",
-        "1 - restitution" => {
-            "a rebound faster than the approach feeds energy in: it is above 0 and at most 1"
-        }
+        "1 - restitution" => "a rebound faster than the approach feeds energy in: it is at most 1",
         "approach" => {
             "write the speed at touch for which the restitution holds, `approach: 0.5`: a slower touch returns with a larger share"
         }

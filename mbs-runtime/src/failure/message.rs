@@ -255,21 +255,33 @@ impl fmt::Display for Failure {
             }
             FailureKind::Stiction { friction } => write!(
                 f,
-                "friction `{}` (line {}) sticks, and has no slopes at rest: take an explicit method, as `DormandPrince8`, or write \
-                 `speed` in place of `sticks` for a smooth law",
+                "`{}` (line {}) is a friction that sticks or a rigid contact, and has no slopes at rest: take an explicit method, as \
+                 `DormandPrince8`, or a smooth law: `speed` in place of `sticks`, a contact with `stiffness`",
                 friction.name, friction.line
             ),
             FailureKind::StickingUndecided { friction } => write!(
                 f,
-                "friction `{}` (line {}) is undecided at t = {time} s: with the forces there it can neither stick nor slide, or it shares \
-                 a force with others in a ratio that is not known; check coefficients and normal forces, and leave out frictions along \
-                 lengths that follow from each other",
+                "`{}` (line {}) is undecided at t = {time} s: with the forces there a friction can neither stick nor slide, a contact neither \
+                 push nor open, or a friction shares a force with others in a ratio that is not known; check coefficients and normal \
+                 forces, and leave out frictions along lengths that follow from each other",
                 friction.name, friction.line
+            ),
+            FailureKind::Penetration { contact, gap } => write!(
+                f,
+                "contact `{}` (line {}) is open with a gap of {gap:e} m at t = {time} s: start with gaps of 0 or more; in a motion take \
+                 shorter steps, or an event resolution that sees the touch",
+                contact.name, contact.line
+            ),
+            FailureKind::ImpactUndecided { contact } => write!(
+                f,
+                "the impact of contact `{}` (line {}) at t = {time} s is undecided: gaps that follow from each other have coefficients of \
+                 restitution that contradict; give them the same one",
+                contact.name, contact.line
             ),
             FailureKind::Chatter { friction, parts } => write!(
                 f,
-                "friction `{}` (line {}), or another one, sticks and slides more than {parts} times within the step from t = {time} s: \
-                 take shorter steps",
+                "`{}` (line {}), or another one, changes between sticking and sliding, or closed and open, more than {parts} times within \
+                 the step from t = {time} s: take shorter steps",
                 friction.name, friction.line
             ),
             FailureKind::MechanismMismatch { mechanism } => {
@@ -342,6 +354,8 @@ mod tests {
             FailureKind::SharedNormalForce { row: ROW }.at(time),
             FailureKind::Stiction { friction: ROW }.without_time(),
             FailureKind::StickingUndecided { friction: ROW }.at(time),
+            FailureKind::Penetration { contact: ROW, gap: -1e-3 }.at(time),
+            FailureKind::ImpactUndecided { contact: ROW }.at(time),
             FailureKind::Chatter { friction: ROW, parts: 64 }.at(time),
             FailureKind::NoStateEquilibrium { state: ROW }.at(time),
             FailureKind::StatesUnknown { state: ROW }.at(time),

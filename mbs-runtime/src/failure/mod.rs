@@ -200,20 +200,33 @@ pub enum FailureKind {
         /// A row that shares the force.
         row: &'static Entry,
     },
-    /// Friction with stiction has no slopes at rest, which the method or analysis needs.
+    /// Friction with stiction has no slopes at rest, and a rigid contact none where it touches, which the method or analysis needs.
     Stiction {
-        /// The friction.
+        /// The friction or contact.
         friction: &'static Entry,
     },
     /// No way of sticking and sliding is consistent with the forces at this time, or frictions along lengths that follow from each other
     /// share a force in a ratio that is not known.
     StickingUndecided {
-        /// A friction that may stick or slide.
+        /// A friction that may stick or slide, or a contact that may open.
         friction: &'static Entry,
     },
-    /// Friction sticks and slides more often within one step than a step is divided.
+    /// The gap of a contact is below zero, where it is open, at a start or after a change; or a motion has missed its touch.
+    Penetration {
+        /// The contact.
+        contact: &'static Entry,
+        /// Its gap (m).
+        gap: f64,
+    },
+    /// No impulses of the contacts that touch fulfil their laws of impact at this time: gaps follow from each other, and their coefficients
+    /// of restitution contradict.
+    ImpactUndecided {
+        /// A contact that closes.
+        contact: &'static Entry,
+    },
+    /// Frictions stick and slide, or contacts close and open, more often within one step than a step is divided.
     Chatter {
-        /// The first friction with stiction.
+        /// The first friction with stiction or rigid contact.
         friction: &'static Entry,
         /// Parts that the step was divided into.
         parts: u32,
@@ -390,6 +403,7 @@ impl FailureKind {
             | FailureKind::StatesUnknown { .. }
             | FailureKind::NotSmooth { .. }
             | FailureKind::Stiction { .. }
+            | FailureKind::Penetration { .. }
             | FailureKind::MechanismMismatch { .. } => FailureSource::Input,
             FailureKind::NotConverged { .. }
             | FailureKind::NotFollowed { .. }
@@ -407,6 +421,7 @@ impl FailureKind {
             | FailureKind::Ambiguous { .. }
             | FailureKind::SharedNormalForce { .. }
             | FailureKind::StickingUndecided { .. }
+            | FailureKind::ImpactUndecided { .. }
             | FailureKind::SingularMass { .. } => FailureSource::Forces,
             FailureKind::Unbounded { .. }
             | FailureKind::Chatter { .. }

@@ -6,7 +6,7 @@ use crate::mechanism::limit::Limit;
 use crate::mechanism::margin::Margin;
 use crate::mechanism::normal_forces::WithNormalForces;
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::stiction::{Grip, WithFrictionRows};
+use crate::mechanism::set_valued::{Grip, WithSetValuedRows};
 use crate::mechanism::transformed::Transformed;
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Scalar;
@@ -160,9 +160,9 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, 
         &mut []
     }
 
-    /// Frictions with stiction, in the order of [`friction_rows`](Self::friction_rows).
-    const FRICTIONS: &'static [Entry] = &[];
-    /// Their modes, sticking or sliding, in the order of [`FRICTIONS`](Self::FRICTIONS). [`force`](Self::force) has the friction of those that
+    /// Frictions with stiction, in the order of [`set_valued_rows`](Self::set_valued_rows).
+    const SET_VALUED: &'static [Entry] = &[];
+    /// Their modes, sticking or sliding, in the order of [`SET_VALUED`](Self::SET_VALUED). [`force`](Self::force) has the friction of those that
     /// slide and the [`Grip::force`] of those that stick.
     #[inline]
     fn grips(_parameters: &Self::Parameters) -> &[Grip<T>] {
@@ -175,7 +175,7 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, 
     }
     /// Result of `see` on their rows.
     #[inline]
-    fn friction_rows<V: WithFrictionRows<T, N>>(
+    fn set_valued_rows<V: WithSetValuedRows<T, N>>(
         &self,
         _parameters: &Self::Parameters,
         _position: &Self::Position,

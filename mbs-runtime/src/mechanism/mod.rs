@@ -14,7 +14,7 @@ pub(crate) mod redundant_widths;
 pub(crate) mod reveal;
 pub(crate) mod roots;
 pub(crate) mod saved_variables;
-pub(crate) mod stiction;
+pub(crate) mod set_valued;
 pub(crate) mod transformed;
 
 use crate::mechanism::block::BlockSolver;

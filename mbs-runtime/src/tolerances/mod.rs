@@ -19,8 +19,8 @@ pub(crate) mod accuracy;
 pub(crate) mod forces;
 pub(crate) mod motion;
 pub(crate) mod positions;
+pub(crate) mod set_valued;
 pub(crate) mod singular;
-pub(crate) mod stiction;
 #[cfg(test)]
 mod tests;
 

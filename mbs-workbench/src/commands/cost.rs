@@ -319,8 +319,8 @@ pub fn study(
         }
         Comparable::Sticks(friction) => {
             return Err(CommandError::Usage(without(format!(
-                "friction `{friction}` sticks, and no reference solution follows it; compare the smooth law, with `speed` in place \
-                 of `sticks`"
+                "`{friction}` is a friction that sticks or a rigid contact, and no reference solution follows it; compare the smooth \
+                 law: `speed` in place of `sticks`, a contact with `stiffness`"
             ))));
         }
         Comparable::Driven(_) if arguments.is_for_forces() => return Err(driven(&target)),

@@ -3,7 +3,7 @@
 //! The motion is the same, so a method must find the same one. The elimination that the compiler chose for the text takes no part:
 //! the blocks are not those of the text, and all entries count.
 
-use mbs_runtime::dynamics::{FrictionRow, Grip, Transformed, WithFrictionRows};
+use mbs_runtime::dynamics::{Grip, SetValuedRow, Transformed, WithSetValuedRows};
 use mbs_runtime::{
     BlockSolver, Dynamic, DynamicState, Energy, Entry, FunctionEntry, Gap, Limit, Margin, Mechanism,
     MissingSlope, NonNegative, Outcome, Partitioned, Reference, Scalar, StateSlope,
@@ -225,15 +225,15 @@ struct AdaptedRows<'a, V, const N: usize, const M: usize> {
     see: V,
 }
 
-impl<V, T, const N: usize, const M: usize> WithFrictionRows<T, N> for AdaptedRows<'_, V, N, M>
+impl<V, T, const N: usize, const M: usize> WithSetValuedRows<T, N> for AdaptedRows<'_, V, N, M>
 where
-    V: WithFrictionRows<T, N>,
+    V: WithSetValuedRows<T, N>,
     T: Scalar,
 {
     type Output = V::Output;
 
-    fn at<const K: usize>(self, rows: &[FrictionRow<T, N>; K]) -> V::Output {
-        let adapted = rows.map(|row| FrictionRow { gradient: self.adaption.force(&row.gradient), ..row });
+    fn at<const K: usize>(self, rows: &[SetValuedRow<T, N>; K]) -> V::Output {
+        let adapted = rows.map(|row| SetValuedRow { gradient: self.adaption.force(&row.gradient), ..row });
         self.see.at(&adapted)
     }
 }
@@ -254,7 +254,7 @@ where
     const FORCES: &'static [Entry] = S::FORCES;
     const LOADS: &'static [Entry] = S::LOADS;
     const CONTACTS: &'static [Entry] = S::CONTACTS;
-    const FRICTIONS: &'static [Entry] = S::FRICTIONS;
+    const SET_VALUED: &'static [Entry] = S::SET_VALUED;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     fn gaps(
@@ -278,7 +278,7 @@ where
     fn grips_mut(parameters: &mut Self::Parameters) -> &mut [Grip<T>] {
         S::grips_mut(parameters)
     }
-    fn friction_rows<V: WithFrictionRows<T, N>>(
+    fn set_valued_rows<V: WithSetValuedRows<T, N>>(
         &self,
         parameters: &Self::Parameters,
         position: &Self::Position,
@@ -289,7 +289,7 @@ where
     ) -> V::Output {
         let (qd, lambda) = (self.adaption.direction(qd), self.adaption.multipliers(lambda));
         let see = AdaptedRows { adaption: &self.adaption, see };
-        self.mechanism.friction_rows(parameters, position, &qd, states, &lambda, see)
+        self.mechanism.set_valued_rows(parameters, position, &qd, states, &lambda, see)
     }
     fn limit_rates(
         &self,

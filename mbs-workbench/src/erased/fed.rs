@@ -1,6 +1,6 @@
 //! A mechanism whose inputs follow courses over the time.
 
-use mbs_runtime::dynamics::{Grip, Transformed, WithFrictionRows, WithNormalForces};
+use mbs_runtime::dynamics::{Grip, Transformed, WithNormalForces, WithSetValuedRows};
 use mbs_runtime::{
     BlockSolver, Dynamic, DynamicState, Energy, Entry, FunctionEntry, Gap, Kinematic, Limit, Margin,
     Mechanism, MissingSlope, NonNegative, Outcome, Partitioned, Reference, Solved,
@@ -204,7 +204,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     const FORCES: &'static [Entry] = S::FORCES;
     const LOADS: &'static [Entry] = S::LOADS;
     const CONTACTS: &'static [Entry] = S::CONTACTS;
-    const FRICTIONS: &'static [Entry] = S::FRICTIONS;
+    const SET_VALUED: &'static [Entry] = S::SET_VALUED;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     // `enclosed` stays `None`: intervals know an input by its value and its rates at the start of a step.
@@ -244,7 +244,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     fn grips_mut(parameters: &mut S::Parameters) -> &mut [Grip<f64>] {
         S::grips_mut(parameters)
     }
-    fn friction_rows<V: WithFrictionRows<f64, N>>(
+    fn set_valued_rows<V: WithSetValuedRows<f64, N>>(
         &self,
         parameters: &S::Parameters,
         position: &S::Position,
@@ -253,7 +253,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
         lambda: &[f64; M],
         see: V,
     ) -> V::Output {
-        self.mechanism.friction_rows(parameters, position, qd, states, lambda, see)
+        self.mechanism.set_valued_rows(parameters, position, qd, states, lambda, see)
     }
     fn normal_forces<V: WithNormalForces<f64, N, M>>(
         &self,

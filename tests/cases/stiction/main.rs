@@ -3,6 +3,7 @@
 
 mod belt;
 mod blocks;
+mod bounces;
 mod bristles;
 mod contacts;
 mod pendulum;

@@ -1,4 +1,4 @@
-//! Frictions with stiction: their table, the function of their rows, and access to how they stick and slide.
+//! Frictions with stiction and rigid contacts: their table, the function of their rows, and access to how they stick and slide.
 
 use std::fmt::Write;
 
@@ -28,25 +28,28 @@ pub fn items(
     let (states, k) = (declared.states.len(), sticking.len());
     let mut text = String::new();
     lets(section, scope, &mut text);
-    let _ = writeln!(text, "let mut __rows = [__mbs::dynamics::FrictionRow::<T, {n}>::new(); {k}];");
-    for (index, Sticking { place, rate, gradient, gamma, limit }) in sticking.iter().enumerate() {
+    let _ = writeln!(text, "let mut __rows = [__mbs::dynamics::SetValuedRow::<T, {n}>::new(); {k}];");
+    for (index, Sticking { place, rate, gradient, gamma, limit, restitution }) in sticking.iter().enumerate()
+    {
+        let some = |id| format!("::core::option::Option::Some({})", scope.operand(id));
         let fields = [
-            ("place", scope.operand(*place)),
-            ("rate", scope.or_zero(*rate)),
-            ("gamma", scope.or_zero(*gamma)),
-            ("limit", scope.operand(*limit)),
+            ("place", Some(scope.operand(*place))),
+            ("rate", Some(scope.or_zero(*rate))),
+            ("gamma", Some(scope.or_zero(*gamma))),
+            ("limit", limit.map(|limit| scope.operand(limit))),
+            ("restitution", restitution.map(some)),
         ];
-        for (field, value) in fields {
+        for (field, value) in fields.into_iter().filter_map(|(field, value)| Some((field, value?))) {
             let _ = writeln!(text, "__rows[{index}].{field} = {value};");
         }
         for (column, entry) in gradient {
             let _ = writeln!(text, "__rows[{index}].gradient[{column}] = {};", scope.operand(*entry));
         }
     }
-    let _ = write!(text, "<__See as __mbs::dynamics::WithFrictionRows<T, {n}>>::at(__see, &__rows)");
+    let _ = write!(text, "<__See as __mbs::dynamics::WithSetValuedRows<T, {n}>>::at(__see, &__rows)");
     let body = block(&text, runtime);
     quote! {
-        const FRICTIONS: &'static [#runtime::Entry] = &[#(#entries),*];
+        const SET_VALUED: &'static [#runtime::Entry] = &[#(#entries),*];
         #[inline]
         fn grips(__p: &__Parameters<T>) -> &[#runtime::dynamics::Grip<T>] {
             &__p.2
@@ -55,7 +58,7 @@ pub fn items(
         fn grips_mut(__p: &mut __Parameters<T>) -> &mut [#runtime::dynamics::Grip<T>] {
             &mut __p.2
         }
-        fn friction_rows<__See: #runtime::dynamics::WithFrictionRows<T, #n>>(
+        fn set_valued_rows<__See: #runtime::dynamics::WithSetValuedRows<T, #n>>(
             &self,
             __p: &__Parameters<T>,
             __s: &__Position<T>,

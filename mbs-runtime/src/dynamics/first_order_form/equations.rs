@@ -57,6 +57,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     quiet: R,
     /// `true` if steps end where contacts close or open.
     locates: bool,
+    /// Energy (J) that impacts have brought in: none, or less.
+    pub(crate) gained: R,
     pub(crate) counts: Counts,
 }
 
@@ -71,7 +73,7 @@ where
     R: Real,
 {
     /// `true` if a text has contacts, or frictions with stiction.
-    const MAY_CHANGE: bool = !(S::CONTACTS.is_empty() && S::FRICTIONS.is_empty());
+    const MAY_CHANGE: bool = !(S::CONTACTS.is_empty() && S::SET_VALUED.is_empty());
 
     /// Those of a motion that continues `from`.
     pub(crate) fn new(
@@ -101,6 +103,7 @@ where
             parameters: Self::MAY_CHANGE.then_some(*model.parameters),
             quiet: start,
             locates: true,
+            gained: R::constant(0.0),
             counts,
         }
     }
@@ -295,7 +298,7 @@ where
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
         let Phased { y, phases } = y;
         self.at(t, phases, |model, formulation, lambda, counts| {
-            let solved = if const { S::FRICTIONS.is_empty() } {
+            let solved = if const { S::SET_VALUED.is_empty() } {
                 formulation.project_and_solve(model, t, y, lambda, counts)?
             } else {
                 model.settle(formulation, t, y, counts)?;
@@ -396,7 +399,7 @@ where
     }
 
     #[inline(always)]
-    fn begin(&mut self, t: R, y: &Self::State) -> Result<bool, Failure> {
+    fn begin(&mut self, t: R, y: &mut Self::State) -> Result<bool, Failure> {
         let mut changes = false;
         if const { !S::CONTACTS.is_empty() }
             && self.locates
@@ -406,7 +409,8 @@ where
             self.quiet = open.until;
             changes = open.changes;
         }
-        if const { !S::FRICTIONS.is_empty() } {
+        if const { !S::SET_VALUED.is_empty() } {
+            changes |= self.strike(t, y)?;
             changes |= self.decide(t, y, changes)?;
         }
         Ok(changes)
@@ -415,7 +419,7 @@ where
     #[inline(always)]
     fn may_kink(&mut self, to: R) -> bool {
         let is_quiet = S::CONTACTS.is_empty() || to <= self.quiet || !self.locates;
-        Self::MAY_KINK && (!S::FRICTIONS.is_empty() || !is_quiet)
+        Self::MAY_KINK && (!S::SET_VALUED.is_empty() || !is_quiet)
     }
 
     fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
@@ -427,7 +431,7 @@ where
             first = self.model.contact_change((self.start, evaluated), (start, end), at, &self.scrutiny)?;
             end = first.unwrap_or(end);
         }
-        if const { !S::FRICTIONS.is_empty() } && !self.model.first_order {
+        if const { !S::SET_VALUED.is_empty() } && !self.model.first_order {
             return Ok(self.slip(step, (start, end))?.or(first));
         }
         Ok(first)

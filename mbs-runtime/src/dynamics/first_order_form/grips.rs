@@ -1,6 +1,7 @@
-//! Modes of frictions with stiction along a run: decided where a step begins, and ended where one changes.
+//! Modes of frictions with stiction and of rigid contacts along a run: decided where a step begins, and ended where one changes.
 
 use crate::dynamics::first_order_form::equations::{Equations, Moving};
+use crate::dynamics::formulations::set_valued::impact::Struck;
 use crate::dynamics::integrators::event::Dense;
 use crate::dynamics::model::{Formulation, Model};
 use crate::failure::Failure;
@@ -25,6 +26,22 @@ where
     /// The parameters of the last step, where they may change.
     pub(crate) fn parameters(&self) -> Option<S::Parameters> {
         self.parameters
+    }
+
+    /// The impacts of contacts that close at `y`; `true` if there are any.
+    #[inline(never)]
+    pub(super) fn strike(&mut self, t: R, y: &mut Moving<S, R, N, M>) -> Result<bool, Failure> {
+        if self.model.first_order {
+            return Ok(false);
+        }
+        let struck = self.at(t, &y.phases, |model, formulation, lambda, counts| {
+            model.impact(t, &y.y, counts, |model, y, counts| formulation.solve(model, t, y, lambda, counts))
+        })?;
+        let Some(Struck { y: next, parameters, gained }) = struck else { return Ok(false) };
+        let of = Model { parameters: &parameters, ..*self.model };
+        self.parameters = self.parameters.map(|parameters| of.gripping(parameters));
+        (y.y, self.end.y, self.gained) = (next, next, self.gained + gained);
+        Ok(true)
     }
 
     /// Modes of the frictions from `y` on; `true` if they change. `anew`: contacts have changed, so that the last rates do not count. The

@@ -104,11 +104,12 @@ pub trait ErrorNorm<T: Scalar>: Equation<T> {
         T::constant(0.0)
     }
 
-    /// A step begins at `y` at time `t` (s). Whether the rate of `y` is to be evaluated anew: another part of the equation may hold from here.
+    /// A step begins at `y` at time `t` (s), which may jump there. `true` if the rate of `y` is to be evaluated anew: another part of the
+    /// equation may hold from here.
     ///
     /// # Errors
     /// If no part of the equation holds from here.
-    fn begin(&mut self, _t: T, _y: &Self::State) -> Result<bool, Failure> {
+    fn begin(&mut self, _t: T, _y: &mut Self::State) -> Result<bool, Failure> {
         Ok(false)
     }
 

@@ -395,7 +395,7 @@ impl<R: Real> Adaptive<R> {
                     return Err(out_of_reach(step, now.t, until));
                 }
             }
-            if equation.begin(now.t, &now.y)? {
+            if equation.begin(now.t, &mut now.y)? {
                 now.rate = equation.rate(now.t, &now.y)?;
             }
             let next_break = breakpoints(now.t).filter(|next| now.t < *next && *next <= until);

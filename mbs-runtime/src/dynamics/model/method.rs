@@ -24,7 +24,7 @@ pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
 /// [`FailureKind::Stiction`].
 pub(crate) fn require_no_stiction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
-    let first = S::FRICTIONS.first();
+    let first = S::SET_VALUED.first();
     first.map_or(Ok(()), |friction| Err(FailureKind::Stiction { friction }.without_time()))
 }
 

@@ -368,7 +368,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         qdd: [R; N],
         lambda: &[R; M],
     ) -> IntegratorState<R, N, S::States> {
-        if const { !S::FRICTIONS.is_empty() } {
+        if const { !S::SET_VALUED.is_empty() } {
             let parameters = self.with_grip_forces(position, y, (&qdd, lambda));
             let model = Model { parameters: &parameters, ..*self };
             return model.rates_of_forces(position, y, qdd, lambda);
@@ -431,7 +431,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         lambda: &[R; M],
         solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {
-        if const { !S::FRICTIONS.is_empty() } {
+        if const { !S::SET_VALUED.is_empty() } {
             return self.balanced_with_grips(standing, position, at, lambda, solve);
         }
         self.balanced_freely(standing, position, at, lambda, solve)

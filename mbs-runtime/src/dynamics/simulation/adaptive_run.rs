@@ -55,6 +55,8 @@ struct Progress<R, P, G> {
     /// Phases of drives that prescribe a rate.
     phases: P,
     counts: Counts,
+    /// Energy (J) that impacts have brought in.
+    gained: R,
     passage: Option<Passage<R>>,
     /// Steps accepted by the control of their size.
     accepted: u32,
@@ -149,13 +151,14 @@ where
             let gained = self.fresh(&mut Counts::default())?.gained;
             shown.reference = shown.reference + gained;
         }
-        let steps = self.adaptive.accepted;
+        let (steps, reference) = (self.adaptive.accepted, shown.reference);
         self.sampled(until, samples, |instant, run| {
             let mut counts = run.counts;
             counts.steps += u64::from(run.accepted.wrapping_sub(steps));
             shown.take_grips(run.parameters.as_ref());
             shown.take(instant, Some(run.phases), counts);
             shown.passage = shown.passage.or(run.passage);
+            shown.reference = reference + run.gained;
             see(&shown);
         })
     }
@@ -175,8 +178,8 @@ where
         if until == from {
             self.stand()?;
             let (phases, counts) = (self.mechanism.phases(), self.counts);
-            let progress =
-                Progress { parameters: None, phases, counts, passage: None, accepted: accepted_steps };
+            let (gained, accepted) = (R::constant(0.0), accepted_steps);
+            let progress = Progress { parameters: None, phases, counts, gained, passage: None, accepted };
             (0..samples).for_each(|_| see(&self.now, &progress));
             return Ok(());
         }
@@ -202,12 +205,9 @@ where
                         Ok((Instant { t, y: y.y, solved, carried: solved.rate.qd }, phases))
                     })?;
                     equations.pass(&instant);
-                    let (counts, passage) = (equations.counts, equations.passage);
-                    let parameters = equations.parameters();
-                    see(
-                        &instant,
-                        &Progress { parameters, phases, counts, passage, accepted: accepted_steps },
-                    );
+                    let (counts, passage, gained) = (equations.counts, equations.passage, equations.gained);
+                    let (parameters, accepted) = (equations.parameters(), accepted_steps);
+                    see(&instant, &Progress { parameters, phases, counts, gained, passage, accepted });
                     index += 1;
                 }
                 Ok(())
@@ -304,7 +304,7 @@ where
         let solved = equations.solve(t, &y)?;
         let phases = equations.phases(t, &y.phases);
         counts = equations.counts;
-        let (passage, parameters) = (equations.passage, equations.parameters());
+        let (passage, parameters, struck) = (equations.passage, equations.parameters(), equations.gained);
         counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
         self.adaptive = adaptive.with_largest(self.adaptive.largest);
         self.errors = errors;
@@ -313,7 +313,7 @@ where
         self.take_grips(parameters.as_ref());
         self.take(&Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
         self.passed = passage.is_some();
-        self.reference = self.reference + gained;
+        self.reference = self.reference + gained + struck;
         if let (Some((reach, _)), Some((_, event))) = (stopped, &mut event) {
             self.stopped = Some(Stopped::new(t, event.at(t, &self.now.y.q, &self.now.y.qd), reach.scale));
         }

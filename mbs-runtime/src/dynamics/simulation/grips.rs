@@ -1,6 +1,7 @@
-//! Modes of frictions with stiction in a motion: decided where it starts, after changes, and between the parts of fixed steps.
+//! Modes of frictions with stiction and of rigid contacts in a motion: decided where it starts, after changes, and between the parts of fixed steps.
 
 use crate::dynamics::formulations::projection::Projection;
+use crate::dynamics::formulations::set_valued::impact::Struck;
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::method::Method;
 use crate::dynamics::model::{Counts, Formulation, Model};
@@ -9,9 +10,9 @@ use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 
-/// Parts that frictions may cut a step of fixed size into, each of them, and at least.
+/// Parts that frictions and contacts may cut a step of fixed size into, each of them, and at least.
 const PARTS_OF_A_FRICTION: u32 = 16;
-const LEAST_PARTS: u32 = 64;
+const LEAST_PARTS: u32 = 256;
 
 /// Parameters with the modes of a state of which nothing but its position and velocity is known.
 pub(super) fn anew<S, X, R, const N: usize, const M: usize>(
@@ -25,7 +26,7 @@ where
     X: Method<S, R, N, M>,
     R: Real,
 {
-    if const { S::FRICTIONS.is_empty() } {
+    if const { S::SET_VALUED.is_empty() } {
         return Ok(*model.parameters);
     }
     let none = [R::constant(0.0); M];
@@ -41,13 +42,13 @@ where
 {
     /// Number of parts that frictions cut a step of fixed size into at most; 0 of a text without.
     pub(super) fn most_slips() -> u32 {
-        let count = u32::try_from(S::FRICTIONS.len()).unwrap_or(u32::MAX);
+        let count = u32::try_from(S::SET_VALUED.len()).unwrap_or(u32::MAX);
         if count == 0 { 0 } else { count.saturating_mul(PARTS_OF_A_FRICTION).max(LEAST_PARTS) }
     }
 
     /// Modes where parameters or inputs have changed.
     pub(super) fn grip_anew(&mut self) -> Result<(), Failure> {
-        if const { S::FRICTIONS.is_empty() } || !self.stale {
+        if const { S::SET_VALUED.is_empty() } || !self.stale {
             return Ok(());
         }
         if let Some(failure) = self.fault {
@@ -63,7 +64,7 @@ where
 
     /// Takes the modes of the last step.
     pub(super) fn take_grips(&mut self, parameters: Option<&S::Parameters>) {
-        if const { !S::FRICTIONS.is_empty() }
+        if const { !S::SET_VALUED.is_empty() }
             && let Some(parameters) = parameters
         {
             self.parameters = Model { parameters, ..self.model() }.gripping(self.parameters);
@@ -72,13 +73,14 @@ where
 
     /// Modes from the present instant on.
     pub(super) fn grip(&mut self) -> Result<(), Failure> {
-        if const { S::FRICTIONS.is_empty() } {
+        if const { S::SET_VALUED.is_empty() } {
             return Ok(());
         }
         self.grip_anew()?;
         if self.stale {
             return Ok(());
         }
+        self.strike()?;
         let (t, y, solved, mut counts) = (self.now.t, self.now.y, self.now.solved, self.counts);
         let (method, model) = (&self.method, self.model());
         let decided = model.decide(t, &y, Some(&solved), &mut |model| {
@@ -93,9 +95,24 @@ where
         Ok(())
     }
 
+    /// The impacts of contacts that close at the present instant.
+    fn strike(&mut self) -> Result<(), Failure> {
+        let (t, y, lambda, mut counts) = (self.now.t, self.now.y, self.now.solved.lambda, self.counts);
+        let method = &self.method;
+        let struck = self
+            .model()
+            .impact(t, &y, &mut counts, |model, y, counts| method.solve(model, t, y, &lambda, counts))?;
+        let Some(Struck { y, parameters, gained }) = struck else { return Ok(()) };
+        let model = Model { parameters: &parameters, ..self.model() };
+        let solved = method.solve(&model, t, &y, &lambda, &mut counts)?;
+        (self.now.y, self.now.solved, self.now.carried) = (y, solved, solved.rate.qd);
+        (self.parameters, self.counts, self.reference) = (parameters, counts, self.reference + gained);
+        Ok(())
+    }
+
     /// Fails where the last part of a step would go over changes of modes.
     pub(super) fn require_parts(&self, part: u32) -> Result<(), Failure> {
-        match S::FRICTIONS.first() {
+        match S::SET_VALUED.first() {
             Some(friction) if Self::most_slips() <= part => {
                 Err(FailureKind::Chatter { friction, parts: part }.at(self.now.t.to_f64()))
             }

@@ -216,7 +216,8 @@ where
         model.metric = &metric;
         Projection::default().project(&model, t, &mut y, &mut counts)?;
         model.rank_rises = rank_rises(&model, t, &y);
-        let parameters = grips::anew(&method, &model, (t, &y), &mut counts)?;
+        let mut parameters = grips::anew(&method, &model, (t, &y), &mut counts)?;
+        S::grips_mut(&mut parameters).iter_mut().for_each(|grip| grip.since = t);
         let model = Model { parameters: &parameters, ..model };
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts);
         let solved = model.with_margin_of_rows(t, &y, model.require_held(t, &y, solved)?);

@@ -124,7 +124,7 @@ where
             lambda: self.lambda(),
             states: &self.now.y.states,
         };
-        if const { S::FRICTIONS.is_empty() } {
+        if const { S::SET_VALUED.is_empty() } {
             return self.mechanism.loads(&self.parameters, &position, &motion);
         }
         self.mechanism.loads(&self.parameters_with_forces(), &position, &motion)

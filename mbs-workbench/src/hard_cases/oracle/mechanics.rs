@@ -187,6 +187,9 @@ fn friction(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
 
 /// k p₀ (p/p₀)ⁿ max(1 − d ġ, 0) with the depth p = max(−g, 0).
 fn contact(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
+    if fields.scalar("restitution")?.is_some() {
+        return Err(Gap("a contact with a restitution".to_string()));
+    }
     let (gap, stiffness) = (fields.required("gap")?, fields.required("stiffness")?.value.v);
     let depth = (-gap.value.v).max(0.0);
     let depth = match (fields.scalar("exponent")?, fields.scalar("depth")?) {
@@ -196,9 +199,6 @@ fn contact(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
         }
         _ => depth,
     };
-    if fields.scalar("restitution")?.is_some() {
-        return Err(Gap("a contact with a restitution".to_string()));
-    }
     let damping = fields.scalar("damping")?.unwrap_or_default().value.v;
     let share = (1.0 - damping * gap.rate.v).max(0.0);
     found.forces.push(Along { force: stiffness * depth * share, place: gap });

@@ -1,15 +1,18 @@
-//! Friction that sticks: rows on velocities in addition to the constraints, by a mask at run time.
+//! Friction that sticks and rigid contacts: rows in addition to the constraints, by a mask at run time.
 //!
 //! A friction that sticks adds s̈ = J q̈ − γ = 0 with the force h along s. The formulation solves without it; its answers A Jᵀ to unit
 //! forces give W = J A Jᵀ, and W h = γ − J q̈₀ the forces (Schur complement). Rows that follow from others share a force in
-//! proportion to their limits. Drift is taken out against the length at which it sticks.
+//! proportion to their limits. Drift is taken out against the length at which it sticks. A closed contact is such a row too: its force is
+//! 0 or pushes, and its length, the gap, is 0.
 //! Source: Glocker 2001, Set-Valued Force Laws, ch. 3 and 5.
 
 pub(crate) mod decide;
+pub(crate) mod impact;
 pub(crate) mod slips;
 
 use crate::dynamics::formulations::projection::correction_factors;
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
+use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::{Balanced, Counts, Formulation, Model};
 use crate::failure::Failure;
 use crate::linear_algebra::factorization::Factorization;
@@ -17,14 +20,14 @@ use crate::linear_algebra::lu::Lu;
 use crate::linear_algebra::parts::{at, diagonal_mut, identity};
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
-use crate::mechanism::stiction::{FrictionRow, Grip, WithFrictionRows};
+use crate::mechanism::set_valued::{Grip, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, stiction};
+use crate::tolerances::{motion, set_valued};
 
 /// Corrections of one position: the first leaves the square of the drift of a step.
 const MOST_CORRECTIONS: u32 = 4;
 
-/// Steps towards the shortest of many solutions; each leaves half or less of what directions above [`stiction::RAISED`] lack.
+/// Steps towards the shortest of many solutions; each leaves half or less of what directions above [`set_valued::RAISED`] lack.
 const MOST_STEPS: u32 = 40;
 
 /// Least weight of a row among those that share a force, of the largest.
@@ -75,7 +78,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         }
         let y = at.1;
         let held = Held { model: self, standing, position, at, lambda, solve };
-        self.mechanism.friction_rows(self.parameters, position, &y.qd, &y.states, lambda, held)
+        self.mechanism.set_valued_rows(self.parameters, position, &y.qd, &y.states, lambda, held)
     }
 
     /// Parameters that hold the forces of frictions which stick, for accelerations and multipliers (N, M) of a state: the part of
@@ -86,7 +89,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         y: &IntegratorState<R, N, S::States>,
         (qdd, lambda): (&[R; N], &[R; M]),
     ) -> S::Parameters {
-        if const { S::FRICTIONS.is_empty() } || !self.sticks() {
+        if const { S::SET_VALUED.is_empty() } || !self.sticks() {
             return *self.parameters;
         }
         let (mechanism, parameters) = (self.mechanism, self.parameters);
@@ -96,7 +99,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             .plus(R::constant(1.0), &one, [&mechanism.reaction(parameters, position, lambda)])
             .plus(minus, &one, [&mechanism.force(parameters, position, &y.qd, &y.states, lambda)]);
         let forces = Forces { model: self, open, parameters: *parameters };
-        mechanism.friction_rows(parameters, position, &y.qd, &y.states, lambda, forces)
+        mechanism.set_valued_rows(parameters, position, &y.qd, &y.states, lambda, forces)
     }
 
     /// Brings a state to a step's end: positions and velocities of a formulation, with what sticks where it sticks.
@@ -108,7 +111,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         counts: &mut Counts,
     ) -> Result<(), Failure> {
         formulation.project(self, t, y, counts)?;
-        if const { S::FRICTIONS.is_empty() } || !self.sticks() {
+        if const { S::SET_VALUED.is_empty() } || !self.sticks() {
             return Ok(());
         }
         for _ in 0..MOST_CORRECTIONS {
@@ -135,7 +138,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let position = self.position(t, y);
         let drift = Drift { model: self, t, y, position: &position, of_rates };
         let none = [R::constant(0.0); M];
-        self.mechanism.friction_rows(self.parameters, &position, &y.qd, &y.states, &none, drift)
+        self.mechanism.set_valued_rows(self.parameters, &position, &y.qd, &y.states, &none, drift)
     }
 }
 
@@ -149,6 +152,38 @@ pub(crate) fn size<R: Real, const N: usize>(gradient: &[R; N], x: &[R; N], value
     size + (value - sum).abs()
 }
 
+/// Size (m) of the terms that a row's length is the sum of: none of its own counts for less than the coordinates' scales.
+pub(crate) fn of_gap<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    q: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> R {
+    let scales = row.gradient.iter().zip(&metric.coordinates);
+    scales.fold(size(&row.gradient, q, row.place), |sum, (entry, scale)| sum + (*entry * *scale).abs())
+}
+
+/// Gap (m) that is rounding.
+pub(crate) fn no_gap<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    q: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> R {
+    motion::NO_VALUE.of::<R>() * of_gap(row, q, metric)
+}
+
+/// Rate (m/s) of a row that is rounding.
+pub(crate) fn no_rate<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    qd: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> R {
+    let mut terms = size(&row.gradient, qd, row.rate);
+    for (entry, scale) in row.gradient.iter().zip(&metric.coordinates) {
+        terms = terms + motion::AT_REST.of::<R>() * (*entry * *scale).abs();
+    }
+    motion::NO_VALUE.of::<R>() * terms
+}
+
 /// Solution with the rows held that stick.
 struct Held<'a, S: Dynamic<R, N, M>, R: Real, F, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
@@ -159,7 +194,7 @@ struct Held<'a, S: Dynamic<R, N, M>, R: Real, F, const N: usize, const M: usize>
     solve: F,
 }
 
-impl<S, R, F, const N: usize, const M: usize> WithFrictionRows<R, N> for Held<'_, S, R, F, N, M>
+impl<S, R, F, const N: usize, const M: usize> WithSetValuedRows<R, N> for Held<'_, S, R, F, N, M>
 where
     S: Dynamic<R, N, M>,
     R: Real,
@@ -167,7 +202,7 @@ where
 {
     type Output = Result<Balanced<R, N, M>, Failure>;
 
-    fn at<const K: usize>(mut self, rows: &[FrictionRow<R, N>; K]) -> Self::Output {
+    fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let zero = R::constant(0.0);
         let mask: [bool; K] = mask(S::grips(self.model.parameters));
         let mut answers = [([zero; N], [zero; M]); K];
@@ -204,14 +239,14 @@ struct Forces<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> 
     parameters: S::Parameters,
 }
 
-impl<S, R, const N: usize, const M: usize> WithFrictionRows<R, N> for Forces<'_, S, R, N, M>
+impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for Forces<'_, S, R, N, M>
 where
     S: Dynamic<R, N, M>,
     R: Real,
 {
     type Output = S::Parameters;
 
-    fn at<const K: usize>(mut self, rows: &[FrictionRow<R, N>; K]) -> S::Parameters {
+    fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> S::Parameters {
         let zero = R::constant(0.0);
         let mask: [bool; K] = mask(S::grips(self.model.parameters));
         let scaled = |x: &[R; N]| {
@@ -223,7 +258,7 @@ where
         let along = rows.map(|row| scaled(&row.gradient));
         let open = scaled(&self.open);
         let right = along.map(|along| dot(&along, &open));
-        let entry = |row: &FrictionRow<R, N>, column: usize| {
+        let entry = |row: &SetValuedRow<R, N>, column: usize| {
             along.get(column).map_or(zero, |other| dot(&scaled(&row.gradient), other))
         };
         let forces = within_limits(rows, mask, &right, entry);
@@ -243,14 +278,14 @@ struct Drift<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     of_rates: bool,
 }
 
-impl<S, R, const N: usize, const M: usize> WithFrictionRows<R, N> for Drift<'_, S, R, N, M>
+impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for Drift<'_, S, R, N, M>
 where
     S: Dynamic<R, N, M>,
     R: Real,
 {
     type Output = Result<Option<[R; N]>, Failure>;
 
-    fn at<const K: usize>(self, rows: &[FrictionRow<R, N>; K]) -> Self::Output {
+    fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let (zero, y) = (R::constant(0.0), self.y);
         let grips = S::grips(self.model.parameters);
         let mask: [bool; K] = mask(grips);
@@ -287,15 +322,17 @@ where
 }
 
 /// Forces of W h = b, b = `right` (K), of rows that stick, `entry` those of W. Where rows follow from others, forces beyond their limits
-/// are taken over by others as far as these can: one row after the other is kept within its limit, the one that exceeds it most first.
+/// are taken over by others as far as these can: one row after the other is kept within its limit, the one that exceeds it most first. A
+/// contact exceeds it where it pulls.
 fn within_limits<R: Real, const N: usize, const K: usize>(
-    rows: &[FrictionRow<R, N>; K],
+    rows: &[SetValuedRow<R, N>; K],
     mut mask: [bool; K],
     right: &[R; K],
-    entry: impl Fn(&FrictionRow<R, N>, usize) -> R,
+    entry: impl Fn(&SetValuedRow<R, N>, usize) -> R,
 ) -> [R; K] {
     let zero = R::constant(0.0);
     let (held, mut kept, mut bound) = (mask, [zero; K], [true; K]);
+    let mut is_kept = false;
     let mut forces = kept;
     for _ in 0..=K {
         let shares = Shares::of(rows, &mask, &entry);
@@ -305,13 +342,13 @@ fn within_limits<R: Real, const N: usize, const K: usize>(
                 kept.iter().enumerate().fold(*rest, |rest, (column, kept)| rest - entry(row, column) * *kept);
         }
         let found = shares.solve(&rest).plus(R::constant(1.0), &[1.0], [&kept]);
-        let meets = |((row, right), held): ((&FrictionRow<R, N>, &R), &bool)| {
+        let meets = |((row, right), held): ((&SetValuedRow<R, N>, &R), &bool)| {
             let terms = found.iter().enumerate().map(|(column, force)| entry(row, column) * *force);
             let (sum, size) =
                 terms.fold((-*right, right.abs()), |(sum, size), term| (sum + term, size + term.abs()));
-            !*held || sum.abs() <= stiction::CONTRADICTED.of::<R>() * size
+            !*held || sum.abs() <= set_valued::CONTRADICTED.of::<R>() * size
         };
-        if kept.iter().any(|kept| *kept != zero) && !rows.iter().zip(right).zip(&held).all(meets) {
+        if is_kept && !rows.iter().zip(right).zip(&held).all(meets) {
             break;
         }
         forces = found;
@@ -319,8 +356,12 @@ fn within_limits<R: Real, const N: usize, const K: usize>(
             break;
         }
         let (mut worst, mut most) = (None, R::constant(1.0));
+        let largest = forces.iter().fold(zero, |largest: R, force| largest.max(force.abs()));
         for (index, ((force, row), free)) in forces.iter().zip(rows).zip(&bound).enumerate() {
-            let ratio = force.abs() / row.limit;
+            let ratio = match row.restitution {
+                None => force.abs() / row.limit,
+                Some(_) => R::constant(1.0) - *force / largest,
+            };
             if *free && most < ratio {
                 (worst, most) = (Some(index), ratio);
             }
@@ -329,9 +370,13 @@ fn within_limits<R: Real, const N: usize, const K: usize>(
         let place =
             kept.iter_mut().zip(&mut mask).zip(&mut bound).zip(forces.iter().zip(rows)).skip(worst).take(1);
         for (((kept, mask), bound), (force, row)) in place {
-            let within = row.limit * (R::constant(1.0) - R::constant(WITHIN) * stiction::EDGE.of());
-            *kept = if *force < zero { -within } else { within };
-            (*mask, *bound) = (false, false);
+            let within = row.limit * (R::constant(1.0) - R::constant(WITHIN) * set_valued::EDGE.of());
+            *kept = match row.restitution {
+                Some(_) => zero,
+                None if *force < zero => -within,
+                None => within,
+            };
+            (*mask, *bound, is_kept) = (false, false, true);
         }
     }
     forces
@@ -350,9 +395,9 @@ struct Shares<R: Real, const K: usize> {
 
 impl<R: Real, const K: usize> Shares<R, K> {
     fn of<const N: usize>(
-        rows: &[FrictionRow<R, N>; K],
+        rows: &[SetValuedRow<R, N>; K],
         mask: &[bool; K],
-        entry: impl Fn(&FrictionRow<R, N>, usize) -> R,
+        entry: impl Fn(&SetValuedRow<R, N>, usize) -> R,
     ) -> Self {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
         let mut matrix = identity::<R, K>();
@@ -367,7 +412,7 @@ impl<R: Real, const K: usize> Shares<R, K> {
         for ((weight, row), _) in weights.iter_mut().zip(rows).zip(mask).filter(|(_, held)| **held) {
             // The shortest x = √limit u has x in proportion to the limits.
             let share = (row.limit / limit).max(R::constant(LEAST_WEIGHT)).sqrt();
-            *weight = if share.is_finite() { share } else { one };
+            *weight = if share.is_finite() && row.restitution.is_none() { share } else { one };
         }
         scale(&mut matrix, &weights);
         let size = largest(&mut matrix.iter().enumerate().map(|(index, row)| at(row, index)));
@@ -380,9 +425,9 @@ impl<R: Real, const K: usize> Shares<R, K> {
         let (factors, margin) = Lu::factorize(&matrix, &[one; K], &[one; K]);
         let mut shares = Shares { mask: *mask, weights, matrix, factors, singular: false };
         // Written so that NaN is singular.
-        if !stiction::DEPENDENT.of::<R>().less(margin) {
+        if !set_valued::DEPENDENT.of::<R>().less(margin) {
             let mut raised = matrix;
-            diagonal_mut(&mut raised).for_each(|entry| *entry = *entry + stiction::RAISED.of());
+            diagonal_mut(&mut raised).for_each(|entry| *entry = *entry + set_valued::RAISED.of());
             shares.factors = Lu::factorize(&raised, &[one; K], &[one; K]).0;
             shares.singular = true;
         }

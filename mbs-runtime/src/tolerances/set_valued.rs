@@ -15,3 +15,9 @@ pub(crate) const EDGE: Law = Law::ulps(1024.0);
 
 /// Part of the terms of an acceleration along a row that sticks, from which the row contradicts others.
 pub(crate) const CONTRADICTED: Law = Law::root(64.0);
+
+/// Depth of an open contact, of the terms of its gap, from which it is no rounding of a start or of an event.
+pub(crate) const PENETRATION: Law = Law::at_least(1e-9, 1024.0);
+
+/// Height of a flight between two impacts, of the terms of the gap, below which all that follow are taken together.
+pub(crate) const LEAST_FLIGHT: Law = Law::ulps(8192.0);

@@ -1,6 +1,6 @@
-//! Ends of sticking and of sliding within a step.
+//! Ends of sticking and of sliding within a step, and of open and closed contacts.
 
-use crate::dynamics::formulations::stiction::{size, sticks};
+use crate::dynamics::formulations::set_valued::{no_gap, no_rate, sticks};
 use crate::dynamics::integrators::event::Scrutiny;
 use crate::dynamics::integrators::event::group::{GROUP, Watched, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
@@ -8,11 +8,11 @@ use crate::dynamics::model::{Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::Entry;
 use crate::mechanism::dynamic::Dynamic;
-use crate::mechanism::stiction::{FrictionRow, WithFrictionRows};
+use crate::mechanism::set_valued::{SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
-use crate::tolerances::motion;
 
-/// Functions of a friction: the force to both sides where it sticks, the speed where it slides.
+/// Functions of a friction: the force to both sides where it sticks, the speed where it slides. A contact has the force where it is
+/// closed, and the gap where it is open.
 const SIDES: usize = 2;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
@@ -29,7 +29,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let held = solved.map(|solved| self.with_grip_forces(&position, y, (&solved.rate.qd, &lambda)));
         let parameters = held.as_ref().unwrap_or(self.parameters);
         let margins = Margins { model: self, held: parameters, y, first, values };
-        self.mechanism.friction_rows(self.parameters, &position, &y.qd, &y.states, &lambda, margins);
+        self.mechanism.set_valued_rows(self.parameters, &position, &y.qd, &y.states, &lambda, margins);
     }
 
     /// The first time (s) between two times at which a friction that sticks begins to slide, or one that slides comes to rest; after it
@@ -44,11 +44,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         fill: impl FnMut(R, usize, &mut [R; GROUP]),
     ) -> Result<Option<R>, Failure> {
         let scrutiny = Scrutiny { resolution, ..Scrutiny::beyond() };
-        match first_beyond(&mut Slips { count: SIDES * S::FRICTIONS.len(), scrutiny, fill }, times) {
+        match first_beyond(&mut Slips { count: SIDES * S::SET_VALUED.len(), scrutiny, fill }, times) {
             Ok(found) => Ok(found.map(|(_, t)| t)),
             Err((member, _)) => {
                 let index = u16::try_from(member / SIDES).unwrap_or(u16::MAX);
-                let Entry { name, line, .. } = checks::entry(S::FRICTIONS, index);
+                let Entry { name, line, .. } = checks::entry(S::SET_VALUED, index);
                 Err(FailureKind::NonFinite { name, line: *line }.without_time())
             }
         }
@@ -63,29 +63,28 @@ struct Margins<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     values: &'a mut [R; GROUP],
 }
 
-impl<S, R, const N: usize, const M: usize> WithFrictionRows<R, N> for Margins<'_, S, R, N, M>
+impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for Margins<'_, S, R, N, M>
 where
     S: Dynamic<R, N, M>,
     R: Real,
 {
     type Output = ();
 
-    fn at<const K: usize>(self, rows: &[FrictionRow<R, N>; K]) {
+    fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) {
         let one = R::constant(1.0);
         for (place, value) in self.values.iter_mut().enumerate() {
             let (index, side) = ((self.first + place) / SIDES, (self.first + place) % SIDES);
             let (Some(row), Some(grip)) = (rows.get(index), S::grips(self.held).get(index)) else { return };
             *value = match (sticks(grip), side) {
+                (true, 0) if row.restitution.is_some() => grip.force,
+                (_, 1) if row.restitution.is_some() => one,
+                (false, _) if row.restitution.is_some() => {
+                    row.place + no_gap(row, &self.y.q, self.model.metric)
+                }
                 (true, 0) => row.limit - grip.force,
                 (true, _) => row.limit + grip.force,
-                (false, 0) => {
-                    let mut terms = size(&row.gradient, &self.y.qd, row.rate);
-                    for (entry, scale) in row.gradient.iter().zip(&self.model.metric.coordinates) {
-                        terms = terms + motion::AT_REST.of::<R>() * (*entry * *scale).abs();
-                    }
-                    // A speed that is none has not ended.
-                    grip.direction * row.rate + motion::NO_VALUE.of::<R>() * terms
-                }
+                // A speed that is none has not ended.
+                (false, 0) => grip.direction * row.rate + no_rate(row, &self.y.qd, self.model.metric),
                 (false, _) => one,
             };
         }

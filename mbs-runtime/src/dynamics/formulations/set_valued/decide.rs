@@ -1,22 +1,22 @@
-//! Modes of frictions at zero speed: the complementarity problem of accelerations and friction forces.
+//! Modes of frictions at zero speed and of contacts that touch: the complementarity problem of accelerations and forces.
 //!
 //! A row at rest sticks with |h| below its limit, or slides with s̈ of the sign of its direction. Both together are a linear
 //! complementarity problem, solved by principal pivots. One row at a time changes: the one that exceeds its limit most, then the first.
 //! So normal forces that depend on the multipliers are exact in each trial. Where pivots come back to modes that they had, all
 //! modes of up to four rows are tried, those with the fewest sliding rows first. A force between the limits of sliding and of sticking
-//! allows both; the row then sticks.
+//! allows both; the row then sticks. A contact that touches is closed while it pushes, or opens with s̈ ≥ 0.
 //! Source: Pfeiffer & Glocker 1996, Multibody Dynamics with Unilateral Contacts, ch. 5; Murty 1974 for the order of pivots.
 
 use crate::dynamics::formulations::projection::correction_factors;
-use crate::dynamics::formulations::stiction::{Shares, size, sticks};
+use crate::dynamics::formulations::set_valued::{Shares, no_gap, no_rate, size, sticks};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
-use crate::mechanism::stiction::{FrictionRow, WithFrictionRows};
+use crate::mechanism::set_valued::{Grip, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, stiction};
+use crate::tolerances::{motion, set_valued};
 
 /// Rows at rest of which all modes are tried.
 const MOST_ENUMERATED: usize = 4;
@@ -65,7 +65,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let position = self.position(t, y);
         let lambda = known.map_or([R::constant(0.0); M], |known| known.lambda);
         let deciding = Deciding { model: self, t, y, position: &position, known, solve };
-        self.mechanism.friction_rows(self.parameters, &position, &y.qd, &y.states, &lambda, deciding)
+        self.mechanism.set_valued_rows(self.parameters, &position, &y.qd, &y.states, &lambda, deciding)
     }
 }
 
@@ -79,17 +79,17 @@ struct Deciding<'a, S: Dynamic<R, N, M>, R: Real, F, const N: usize, const M: us
 }
 
 /// Copies rows.
-struct Rows<'a, R, const N: usize, const L: usize>(&'a mut [FrictionRow<R, N>; L]);
+pub(crate) struct Rows<'a, R, const N: usize, const L: usize>(pub(crate) &'a mut [SetValuedRow<R, N>; L]);
 
-impl<R: Real, const N: usize, const L: usize> WithFrictionRows<R, N> for Rows<'_, R, N, L> {
+impl<R: Real, const N: usize, const L: usize> WithSetValuedRows<R, N> for Rows<'_, R, N, L> {
     type Output = ();
 
-    fn at<const K: usize>(self, rows: &[FrictionRow<R, N>; K]) {
+    fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) {
         self.0.iter_mut().zip(rows).for_each(|(to, from)| *to = *from);
     }
 }
 
-impl<S, R, F, const N: usize, const M: usize> WithFrictionRows<R, N> for Deciding<'_, S, R, F, N, M>
+impl<S, R, F, const N: usize, const M: usize> WithSetValuedRows<R, N> for Deciding<'_, S, R, F, N, M>
 where
     S: Dynamic<R, N, M>,
     R: Real,
@@ -97,18 +97,27 @@ where
 {
     type Output = Result<Option<Decided<S, R, N, M>>, Failure>;
 
-    fn at<const K: usize>(mut self, rows: &[FrictionRow<R, N>; K]) -> Self::Output {
+    fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let zero = R::constant(0.0);
+        for (index, row) in rows.iter().enumerate().filter(|(_, row)| row.restitution.is_some()) {
+            if self.known.is_none() {
+                self.model.require_apart(self.t, &self.y.q, (index, row))?;
+            }
+        }
         let rest = self.at_rest(rows);
         let mut trial = *self.model.parameters;
         for ((grip, row), rest) in S::grips_mut(&mut trial).iter_mut().zip(rows).zip(&rest) {
-            if !rest {
+            if row.restitution.is_some() {
+                let closes = *rest && !sticks(grip);
+                (grip.place, grip.since) = (zero, if closes { self.t } else { grip.since });
+                grip.direction = if *rest { zero } else { R::constant(1.0) };
+            } else if !rest {
                 grip.direction = row.rate.sign();
             } else if !sticks(grip) || self.known.is_none() {
                 // What has stuck and still does keeps its place, roundings apart.
                 let off = (row.place - grip.place).abs();
                 let stays = sticks(grip)
-                    && off <= stiction::EDGE.of::<R>() * size(&row.gradient, &self.y.q, row.place);
+                    && off <= set_valued::EDGE.of::<R>() * size(&row.gradient, &self.y.q, row.place);
                 grip.place = if stays { grip.place } else { row.place };
                 grip.direction = zero;
             }
@@ -117,7 +126,7 @@ where
         for round in 0..=K {
             let Some(index) = self.held_by_others(rows, &rest, &trial, &decided)? else { break };
             if round == K {
-                let friction = checks::entry(S::FRICTIONS, u16::try_from(index).unwrap_or(u16::MAX));
+                let friction = checks::entry(S::SET_VALUED, u16::try_from(index).unwrap_or(u16::MAX));
                 return Err(FailureKind::StickingUndecided { friction }.at(self.t.to_f64()));
             }
             // It slipped before the row that moves: with that one sliding it may hold.
@@ -137,17 +146,16 @@ where
     F: FnMut(&Model<'_, S, R, N, M>) -> Result<Solved<R, N, M, S::States>, Failure>,
 {
     /// Rows at zero speed: those that stick, those whose sliding has ended, and at a new start those without speed.
-    fn at_rest<const K: usize>(&self, rows: &[FrictionRow<R, N>; K]) -> [bool; K] {
+    fn at_rest<const K: usize>(&self, rows: &[SetValuedRow<R, N>; K]) -> [bool; K] {
         let (zero, mut rest) = (R::constant(0.0), [false; K]);
         let resolution = R::constant(ROUNDINGS_OF_AN_EVENT) * motion::LEAST_STEP.of() * self.t.abs();
         for ((rest, row), grip) in rest.iter_mut().zip(rows).zip(S::grips(self.model.parameters)) {
-            let mut terms = size(&row.gradient, &self.y.qd, row.rate);
-            for (entry, scale) in row.gradient.iter().zip(&self.model.metric.coordinates) {
-                terms = terms + motion::AT_REST.of::<R>() * (*entry * *scale).abs();
-            }
             let change = self.known.map_or(zero, |known| dot(&row.gradient, &known.rate.qd) - row.gamma);
-            let none = motion::NO_VALUE.of::<R>() * terms + resolution * change.abs();
+            let none = no_rate(row, &self.y.qd, self.model.metric) + resolution * change.abs();
+            let touches = || row.place <= no_gap(row, &self.y.q, self.model.metric);
             *rest = match self.known {
+                Some(_) if row.restitution.is_some() => sticks(grip) || touches() && row.rate <= none,
+                None if row.restitution.is_some() => touches() && row.rate.abs() <= none,
                 Some(_) => sticks(grip) || grip.direction * row.rate <= none,
                 None => row.rate.abs() <= none,
             };
@@ -167,7 +175,7 @@ where
 
     fn pivots<const K: usize>(
         &mut self,
-        rows: &[FrictionRow<R, N>; K],
+        rows: &[SetValuedRow<R, N>; K],
         rest: &[bool; K],
         trial: &mut S::Parameters,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
@@ -203,7 +211,7 @@ where
         if let Some(solved) = self.enumerate(rows, rest, trial) {
             return Ok(solved);
         }
-        let friction = checks::entry(S::FRICTIONS, u16::try_from(wrong).unwrap_or(u16::MAX));
+        let friction = checks::entry(S::SET_VALUED, u16::try_from(wrong).unwrap_or(u16::MAX));
         let undecided = FailureKind::StickingUndecided { friction }.at(self.t.to_f64());
         Err(failed.unwrap_or(undecided))
     }
@@ -213,7 +221,7 @@ where
     #[inline(never)]
     fn enumerate<const K: usize>(
         &mut self,
-        rows: &[FrictionRow<R, N>; K],
+        rows: &[SetValuedRow<R, N>; K],
         rest: &[bool; K],
         trial: &mut S::Parameters,
     ) -> Option<Solved<R, N, M, S::States>> {
@@ -231,7 +239,10 @@ where
                     slides += usize::from(!sticks(grip));
                     left /= 3;
                 }
-                if slides != sliding {
+                let behind = |(row, grip): (&SetValuedRow<R, N>, &Grip<R>)| {
+                    row.restitution.is_some() && grip.direction < R::constant(0.0)
+                };
+                if slides != sliding || rows.iter().zip(S::grips(trial)).any(behind) {
                     continue;
                 }
                 let Ok(solved) = self.rates(trial) else { continue };
@@ -246,7 +257,7 @@ where
 
     fn verdicts<const K: usize>(
         &self,
-        rows: &[FrictionRow<R, N>; K],
+        rows: &[SetValuedRow<R, N>; K],
         rest: &[bool; K],
         trial: &S::Parameters,
         solved: &Solved<R, N, M, S::States>,
@@ -257,7 +268,7 @@ where
         let held = model.with_grip_forces(self.position, y, (qdd, lambda));
         let mut present = *rows;
         let copied = Rows(&mut present);
-        model.mechanism.friction_rows(trial, self.position, &y.qd, &y.states, lambda, copied);
+        model.mechanism.set_valued_rows(trial, self.position, &y.qd, &y.states, lambda, copied);
         let mut verdicts = [Verdict::Consistent; K];
         let grips = S::grips(&held).iter().zip(rest);
         for ((verdict, row), (grip, _)) in
@@ -275,18 +286,25 @@ where
             };
             if !sticks(grip) {
                 // As much as the forces at the edge of sticking make, and more: one of both is consistent.
-                let edge = R::constant(SLIDING_EDGE) * stiction::EDGE.of();
+                let edge = R::constant(SLIDING_EDGE) * set_valued::EDGE.of();
                 if exceeds(-acceleration * grip.direction, edge) {
                     *verdict = Verdict::Sticks;
                 }
                 continue;
             }
+            if row.restitution.is_some() {
+                // Written so that NaN does not push.
+                if !zero.less(grip.force) {
+                    *verdict = Verdict::Slips { direction: one, excess: one };
+                }
+                continue;
+            }
             let against = if zero < grip.force { -one } else { one };
             // Written so that NaN does not hold.
-            if !force.less(limit - stiction::EDGE.of::<R>() * (limit + force)) {
+            if !force.less(limit - set_valued::EDGE.of::<R>() * (limit + force)) {
                 let least = R::constant(f64::from(f32::MIN_POSITIVE));
                 *verdict = Verdict::Slips { direction: against, excess: force / limit.max(least) };
-            } else if exceeds(acceleration.abs(), stiction::CONTRADICTED.of()) {
+            } else if exceeds(acceleration.abs(), set_valued::CONTRADICTED.of()) {
                 *verdict = Verdict::Slips { direction: acceleration.sign(), excess: one };
             }
         }
@@ -296,7 +314,7 @@ where
     /// A row that has slipped while others, from which it follows, still hold: its force would depend on when that began.
     fn held_by_others<const K: usize>(
         &self,
-        rows: &[FrictionRow<R, N>; K],
+        rows: &[SetValuedRow<R, N>; K],
         rest: &[bool; K],
         trial: &S::Parameters,
         solved: &Solved<R, N, M, S::States>,
@@ -309,15 +327,19 @@ where
         {
             let acceleration = dot(&row.gradient, qdd) - row.gamma;
             let terms = size(&row.gradient, qdd, acceleration) + row.gamma.abs();
-            let still = |made: R| acceleration.abs() <= stiction::CONTRADICTED.of::<R>() * (terms + made);
-            if sticks(grip) || !holds.contains(&true) || !still(row.limit * self.softness(&row.gradient)) {
+            let still = |made: R| acceleration.abs() <= set_valued::CONTRADICTED.of::<R>() * (terms + made);
+            if row.restitution.is_some()
+                || sticks(grip)
+                || !holds.contains(&true)
+                || !still(row.limit * self.softness(&row.gradient))
+            {
                 continue;
             }
             let factors = correction_factors(self.model, self.t, self.position)?;
             let answers = rows.map(|row| factors.solve(&row.gradient, &[zero; M]).0);
             let mut mask = holds;
             mask.iter_mut().skip(index).take(1).for_each(|mask| *mask = true);
-            let entry = |row: &FrictionRow<R, N>, column: usize| {
+            let entry = |row: &SetValuedRow<R, N>, column: usize| {
                 answers.get(column).map_or(zero, |answer| dot(&row.gradient, answer))
             };
             if Shares::of(rows, &mask, entry).singular && !Shares::of(rows, &holds, entry).singular {

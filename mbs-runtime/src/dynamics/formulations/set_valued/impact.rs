@@ -1,0 +1,332 @@
+//! Impacts of rigid contacts: velocities jump where a gap closes.
+//!
+//! Impulses P of all contacts that touch and do not separate solve the complementarity problem 0 ≤ P ⊥ v⁺ + e v⁻ ≥ 0 with v⁺ = v⁻ + W P
+//! (Newton's law for each, Moreau's for several at once). It is the least of ½ Pᵀ W P + bᵀ P over P ≥ 0, found by changes of its active
+//! set. A contact that separates beforehand takes part as soon as others have made it approach. So no impact brings in energy.
+//!
+//! Flights that follow each other ever faster end at one time. Contacts that rise by rounding alone before they fall back are closed at
+//! once; the time that their bounces would still take, a geometric series with the ratio e, is added to the time of closing.
+//! Source: Moreau 1988, Unilateral contact and dry friction in finite freedom dynamics; Lawson & Hanson 1974, ch. 23.
+
+use crate::dynamics::formulations::projection::{Projection, correction_factors};
+use crate::dynamics::formulations::set_valued::decide::Rows;
+use crate::dynamics::formulations::set_valued::{Shares, no_gap, no_rate, of_gap, sticks};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
+use crate::dynamics::model::{Counts, Formulation, Model, Solved};
+use crate::failure::{Failure, FailureKind, checks};
+use crate::linear_algebra::vectors::dot;
+use crate::mechanism::Entry;
+use crate::mechanism::dynamic::Dynamic;
+use crate::mechanism::set_valued::{SetValuedRow, WithSetValuedRows};
+use crate::scalar::number::Real;
+use crate::tolerances::set_valued;
+
+/// Impacts one after the other at one time, a contact; with more they count as infinitely many, and the last one is plastic.
+const MOST_IMPACTS: usize = 64;
+
+/// Changes of the active set, a contact: one or two are usual.
+const MOST_CHANGES: usize = 16;
+
+/// A state after its impacts.
+pub(crate) struct Struck<Y, P, R> {
+    /// Positions with closed gaps, velocities after the impacts.
+    pub(crate) y: Y,
+    /// Parameters with contacts that have come to rest closed, and with frictions sliding that stuck.
+    pub(crate) parameters: P,
+    /// Energy (J) that the impacts brought in: none, or less.
+    pub(crate) gained: R,
+}
+
+/// See [`Struck`].
+pub(crate) type StruckOf<S, R, const N: usize, const M: usize> = Struck<
+    IntegratorState<R, N, <S as Dynamic<R, N, M>>::States>,
+    <S as crate::mechanism::Mechanism<R, N, M>>::Parameters,
+    R,
+>;
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Fails where the contact at `index` among the set-valued forces is open with a gap below zero.
+    ///
+    /// # Errors
+    /// [`FailureKind::Penetration`].
+    pub(crate) fn require_apart(
+        &self,
+        t: R,
+        q: &[R; N],
+        (index, row): (usize, &SetValuedRow<R, N>),
+    ) -> Result<(), Failure> {
+        let deepest = set_valued::PENETRATION.of::<R>() * of_gap(row, q, self.metric);
+        // Written so that NaN is refused.
+        if (-deepest).less(row.place) {
+            return Ok(());
+        }
+        let (contact, gap) = (contact::<S, R, N, M>(index), row.place.to_f64());
+        Err(FailureKind::Penetration { contact, gap }.at(t.to_f64()))
+    }
+
+    /// The state after the impacts of contacts that close at `t` (s); `None` where none does. `solve` gives the rates of a state.
+    ///
+    /// # Errors
+    /// [`FailureKind::Penetration`]; [`FailureKind::ImpactUndecided`]; those of projection.
+    pub(crate) fn impact(
+        &self,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+        counts: &mut Counts,
+        solve: impl FnMut(
+            &Model<'_, S, R, N, M>,
+            &IntegratorState<R, N, S::States>,
+            &mut Counts,
+        ) -> Result<Solved<R, N, M, S::States>, Failure>,
+    ) -> Result<Option<StruckOf<S, R, N, M>>, Failure> {
+        let position = self.position(t, y);
+        let striking = Striking { model: self, t, y, counts, solve };
+        self.mechanism.set_valued_rows(
+            self.parameters,
+            &position,
+            &y.qd,
+            &y.states,
+            &[R::constant(0.0); M],
+            striking,
+        )
+    }
+}
+
+struct Striking<'a, S: Dynamic<R, N, M>, R: Real, F, const N: usize, const M: usize> {
+    model: &'a Model<'a, S, R, N, M>,
+    t: R,
+    y: &'a IntegratorState<R, N, S::States>,
+    counts: &'a mut Counts,
+    solve: F,
+}
+
+impl<S, R, F, const N: usize, const M: usize> WithSetValuedRows<R, N> for Striking<'_, S, R, F, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    F: FnMut(
+        &Model<'_, S, R, N, M>,
+        &IntegratorState<R, N, S::States>,
+        &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure>,
+{
+    type Output = Result<Option<StruckOf<S, R, N, M>>, Failure>;
+
+    fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
+        let (model, zero) = (self.model, R::constant(0.0));
+        let (mut touching, mut strikes) = ([false; K], false);
+        for (index, (row, grip)) in rows.iter().zip(S::grips(model.parameters)).enumerate() {
+            if row.restitution.is_none() {
+                continue;
+            }
+            let (q, closed) = (&self.y.q, sticks(grip));
+            if !closed {
+                model.require_apart(self.t, q, (index, row))?;
+            }
+            let touches = closed || row.place <= no_gap(row, q, model.metric);
+            strikes |= touches && !closed && row.rate < -no_rate(row, &self.y.qd, model.metric);
+            touching.iter_mut().skip(index).take(1).for_each(|touching| *touching = touches);
+        }
+        if !strikes {
+            return Ok(None);
+        }
+        let (mut next, parameters) = self.closed(&touching)?;
+        let closed = Model { parameters: &parameters, ..*model };
+        let position = model.position(self.t, &next);
+        let kinetic = |qd: &[R; N]| model.mechanism.energy(&parameters, &position, qd).kinetic;
+        let before = kinetic(&next.qd);
+        let mut present = *rows;
+        let read = |y: &IntegratorState<R, N, S::States>, rows: &mut [SetValuedRow<R, N>; K]| {
+            let none = [zero; M];
+            let (mechanism, copied) = (model.mechanism, Rows(rows));
+            mechanism.set_valued_rows(&parameters, &position, &y.qd, &y.states, &none, copied);
+        };
+        read(&next, &mut present);
+        let factors = correction_factors(model, self.t, &position)?;
+        let mut answers = [[zero; N]; K];
+        for ((answer, row), _) in
+            answers.iter_mut().zip(&present).zip(&touching).filter(|(_, touches)| **touches)
+        {
+            *answer = factors.solve(&row.gradient, &[zero; M]).0;
+        }
+        let gradients = present;
+        let entry = |row: &SetValuedRow<R, N>, column: usize| {
+            answers.get(column).map_or(zero, |answer| dot(&row.gradient, answer))
+        };
+        let most = MOST_IMPACTS.saturating_mul(K);
+        for impact in 0..=most {
+            let (mut part, mut b, mut approaching) = (touching, [zero; K], None);
+            for (index, ((part, b), row)) in part.iter_mut().zip(&mut b).zip(&present).enumerate() {
+                let none = no_rate(row, &next.qd, model.metric);
+                // The last one takes contacts along that separate: it is the shortest change to speeds that open or keep all gaps.
+                let restitution = row.restitution.filter(|_| impact < most).unwrap_or(zero);
+                *part = *part && (impact == most || row.rate <= none);
+                *b = row.rate + restitution * row.rate.min(zero);
+                if *part && row.rate < -none && approaching.is_none() {
+                    approaching = Some(index);
+                }
+            }
+            let Some(index) = approaching else { break };
+            let Some(impulses) = impulses(&gradients, &part, &b, entry) else {
+                let contact = contact::<S, R, N, M>(index);
+                return Err(FailureKind::ImpactUndecided { contact }.at(self.t.to_f64()));
+            };
+            for (impulse, answer) in impulses.iter().zip(&answers) {
+                next.qd = next.qd.plus(*impulse, &[1.0], [answer]);
+            }
+            read(&next, &mut present);
+        }
+        let mut modes = parameters;
+        self.rest(&closed, (&mut next, &mut modes), (&present, &touching), entry, &answers)?;
+        read(&next, &mut present);
+        let grips = S::grips_mut(&mut modes).iter_mut().zip(S::grips(model.parameters)).zip(&present);
+        for ((grip, old), row) in grips {
+            let moves = no_rate(row, &next.qd, model.metric) < row.rate.abs();
+            match row.restitution {
+                Some(_) if moves || !sticks(grip) => grip.direction = R::constant(1.0),
+                Some(_) => {}
+                None if moves => grip.direction = row.rate.sign(),
+                None => *grip = *old,
+            }
+        }
+        let gained = kinetic(&next.qd) - before;
+        Ok(Some(Struck { y: next, parameters: modes, gained }))
+    }
+}
+
+impl<S, R, F, const N: usize, const M: usize> Striking<'_, S, R, F, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    F: FnMut(
+        &Model<'_, S, R, N, M>,
+        &IntegratorState<R, N, S::States>,
+        &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure>,
+{
+    /// The state with gaps of 0 where contacts touch, its velocities on the constraints alone; and parameters with these contacts closed and
+    /// with all frictions sliding.
+    fn closed<const K: usize>(
+        &mut self,
+        touching: &[bool; K],
+    ) -> Result<(IntegratorState<R, N, S::States>, S::Parameters), Failure> {
+        let (model, zero, one) = (self.model, R::constant(0.0), R::constant(1.0));
+        let (mut next, mut parameters) = (*self.y, *model.parameters);
+        for (grip, touches) in S::grips_mut(&mut parameters).iter_mut().zip(touching) {
+            let since = if sticks(grip) { grip.since } else { self.t };
+            (grip.direction, grip.place, grip.since) = (if *touches { zero } else { one }, zero, since);
+        }
+        let closed = Model { parameters: &parameters, ..*model };
+        closed.settle(&Projection::default(), self.t, &mut next, self.counts)?;
+        next.qd = self.y.qd;
+        Projection::default().project(&closed, self.t, &mut next, self.counts)?;
+        Ok((next, parameters))
+    }
+
+    /// Brings contacts to rest that would fall back from a height of rounding, however often: their last velocity is taken out, and the
+    /// time of their bounces added. The others are opened.
+    fn rest<const K: usize>(
+        &mut self,
+        closed: &Model<'_, S, R, N, M>,
+        (next, parameters): (&mut IntegratorState<R, N, S::States>, &mut S::Parameters),
+        (rows, touching): (&[SetValuedRow<R, N>; K], &[bool; K]),
+        entry: impl Fn(&SetValuedRow<R, N>, usize) -> R,
+        answers: &[[R; N]; K],
+    ) -> Result<(), Failure> {
+        let (zero, one, two) = (R::constant(0.0), R::constant(1.0), R::constant(2.0));
+        let mut still = [false; K];
+        for ((still, row), _) in still.iter_mut().zip(rows).zip(touching).filter(|(_, touches)| **touches) {
+            *still = row.rate <= no_rate(row, &next.qd, closed.metric);
+        }
+        let rises = still != *touching;
+        let known = if rises { (self.solve)(closed, next, self.counts).ok() } else { None };
+        let forces = known.map(|known| {
+            let position = closed.position(self.t, next);
+            closed.with_grip_forces(&position, next, (&known.rate.qd, &known.lambda))
+        });
+        let all = Shares::of(rows, touching, &entry);
+        let (mut ends, mut open) = ([false; K], [zero; K]);
+        for (index, (row, touches)) in rows.iter().zip(touching).enumerate() {
+            let Some(restitution) = row.restitution.filter(|_| *touches) else { continue };
+            let force =
+                forces.as_ref().and_then(|known| S::grips(known).get(index)).map_or(zero, |grip| grip.force);
+            // The acceleration with which it would fall back while the others hold.
+            let mut alone = [zero; K];
+            alone.iter_mut().skip(index).take(1).for_each(|alone| *alone = one);
+            let stiff = all.solve(&alone).get(index).copied().unwrap_or(zero);
+            // Of gaps that follow from others there is no such acceleration, and that of the contact by itself is taken.
+            let pressed = if all.singular { force * entry(row, index) } else { force / stiff };
+            let height = set_valued::LEAST_FLIGHT.of::<R>() * of_gap(row, &next.q, closed.metric);
+            let is_still = still.get(index) == Some(&true);
+            let falls = restitution < one && row.rate * row.rate < two * pressed * height;
+            let place = ends.iter_mut().zip(&mut open).zip(S::grips_mut(parameters)).skip(index).take(1);
+            for ((ends, open), grip) in place {
+                // Those at rest stay there.
+                (*ends, *open) = (is_still || falls, row.rate);
+                if !is_still && falls {
+                    grip.since = self.t + two * row.rate / (pressed * (one - restitution));
+                } else if !is_still {
+                    grip.direction = one;
+                }
+            }
+        }
+        let shares = Shares::of(rows, &ends, entry);
+        for (share, answer) in shares.solve(&open).iter().zip(answers) {
+            next.qd = next.qd.plus(-*share, &[1.0], [answer]);
+        }
+        Ok(())
+    }
+}
+
+/// The contact at `index` among the set-valued forces.
+fn contact<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(index: usize) -> &'static Entry {
+    checks::entry(S::SET_VALUED, u16::try_from(index).unwrap_or(u16::MAX))
+}
+
+/// P ≥ 0 (K) with W P + b ≥ 0 and one of both 0 in each row of `part`; 0 elsewhere. `None` where changes of the active set do not end.
+fn impulses<R: Real, const N: usize, const K: usize>(
+    rows: &[SetValuedRow<R, N>; K],
+    part: &[bool; K],
+    b: &[R; K],
+    entry: impl Fn(&SetValuedRow<R, N>, usize) -> R,
+) -> Option<[R; K]> {
+    let (zero, one) = (R::constant(0.0), R::constant(1.0));
+    let (mut impulses, mut active) = ([zero; K], [false; K]);
+    for _ in 0..MOST_CHANGES.saturating_mul(K.saturating_add(1)) {
+        let (mut most, mut next) = (zero, None);
+        for (index, ((row, b), _)) in rows.iter().zip(b).zip(part).enumerate().filter(|(_, (_, part))| **part)
+        {
+            let terms = impulses.iter().enumerate().map(|(column, impulse)| entry(row, column) * *impulse);
+            let (sum, size) = terms.fold((*b, b.abs()), |(sum, size), term| (sum + term, size + term.abs()));
+            let misses = -sum / entry(row, index).sqrt();
+            if active.get(index) == Some(&false)
+                && set_valued::EDGE.of::<R>() * size < -sum
+                && (next.is_none() || most < misses)
+            {
+                (most, next) = (misses, Some(index));
+            }
+        }
+        let Some(next) = next else { return Some(impulses) };
+        active.iter_mut().skip(next).take(1).for_each(|active| *active = true);
+        for _ in 0..=K {
+            let wanted = Shares::of(rows, &active, &entry).solve(&b.map(|b| -b));
+            let mut share = one;
+            for ((old, new), _) in impulses.iter().zip(&wanted).zip(&active).filter(|(_, active)| **active) {
+                if *new <= zero {
+                    share = share.min(*old / (*old - *new).max(R::constant(f64::from(f32::MIN_POSITIVE))));
+                }
+            }
+            for ((old, new), active) in impulses.iter_mut().zip(&wanted).zip(&mut active) {
+                let moved = *old + share * (*new - *old);
+                let leaves =
+                    *new <= zero && (moved <= set_valued::EDGE.of::<R>() * old.abs() || *old == zero);
+                *active = *active && !leaves;
+                *old = if *active { moved } else { zero };
+            }
+            if one <= share {
+                break;
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,77 @@
+//! Set-valued forces: rows of frictions that stick and of rigid contacts, and the mode of each.
+
+use crate::scalar::number::Scalar;
+
+/// Mode of a friction with stiction or of a rigid contact: constant within a step, changed at events between steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grip<T> {
+    /// Direction in which it slides: 1, −1, or 0 where it sticks. Of a contact 1 where it is open, 0 where it is closed.
+    pub direction: T,
+    /// Force (N) along the length with which it sticks, or of the closed contact; 0 while equations are solved for it, and where it
+    /// slides or is open.
+    pub force: T,
+    /// The length (m) at which it sticks; 0 of a contact.
+    pub place: T,
+    /// Time (s) since which a contact is closed, with the time that its last, infinitely many bounces take together. Of others without meaning.
+    pub since: T,
+}
+
+impl<T: Scalar> Grip<T> {
+    /// Neither slides nor holds: before anything is known of the motion.
+    pub fn new() -> Self {
+        let zero = T::constant(0.0);
+        Grip { direction: zero, force: zero, place: zero, since: zero }
+    }
+}
+
+impl<T: Scalar> Default for Grip<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The length s of a friction with stiction, or the gap s of a rigid contact, in one state: s̈ = J q̈ − γ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetValuedRow<T, const N: usize> {
+    /// s (m).
+    pub place: T,
+    /// ṡ (m/s).
+    pub rate: T,
+    /// J = ∂s/∂q: N.
+    pub gradient: [T; N],
+    /// γ (m/s²).
+    pub gamma: T,
+    /// Largest force (N) with which it sticks; 0 of a contact, whose force is any that pushes.
+    pub limit: T,
+    /// Coefficient of restitution e of a contact, 0 ≤ e ≤ 1; `None` of a friction.
+    pub restitution: Option<T>,
+}
+
+impl<T: Scalar, const N: usize> SetValuedRow<T, N> {
+    /// Every entry 0.
+    pub fn new() -> Self {
+        let zero = T::constant(0.0);
+        SetValuedRow {
+            place: zero,
+            rate: zero,
+            gradient: [zero; N],
+            gamma: zero,
+            limit: zero,
+            restitution: None,
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize> Default for SetValuedRow<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A function of the rows of all frictions with stiction and rigid contacts, whatever their number.
+pub trait WithSetValuedRows<T, const N: usize> {
+    /// Its result.
+    type Output;
+    /// Its value.
+    fn at<const K: usize>(self, rows: &[SetValuedRow<T, N>; K]) -> Self::Output;
+}
