@@ -209,26 +209,36 @@ mechanism! {
     out carried: N = force(between);
 }
 
-/// Two balls by parabolas from impact to impact, up to `until`.
+/// Time in which a ball at height `y` with the speed `v` falls to 0.
+fn fall(y: f64, v: f64) -> f64 {
+    (v + (v * v + 2.0 * 9.81 * y.max(0.0)).sqrt()) / 9.81
+}
+
+/// Heights of two balls by parabolas from impact to impact, up to `until`. Flights below 1e-9 s end the bounces on the floor.
 fn stack(until: f64) -> [f64; 2] {
-    let (mut t, mut y, mut v) = (0.0, [0.5, 1.2_f64], [0.0_f64, 0.0_f64]);
+    let (mut t, mut y, mut v, mut rests) = (0.0, [0.5_f64, 1.2], [0.0_f64, 0.0], false);
     loop {
-        let gap = y[1] - y[0] - 0.1;
-        let closing = v[0] - v[1];
-        let meet = if closing > 1e-15 { gap.max(0.0) / closing } else { f64::MAX };
-        let fall = (v[0] + (v[0] * v[0] + 2.0 * 9.81 * y[0].max(0.0)).sqrt()) / 9.81;
-        let fall = if fall > 1e-14 { fall } else { f64::MAX };
-        let step = meet.min(fall).min(until - t);
-        for index in 0..2 {
+        let (gap, closing) = (y[1] - y[0] - 0.1, v[0] - v[1]);
+        let meets = match rests {
+            true => fall(gap, v[1]),
+            false if closing > 1e-15 => gap.max(0.0) / closing,
+            false => f64::MAX,
+        };
+        let falls = if rests { f64::MAX } else { fall(y[0], v[0]) };
+        let step = meets.min(falls).min(until - t);
+        for index in (usize::from(rests))..2 {
             y[index] += v[index] * step - 0.5 * 9.81 * step * step;
             v[index] -= 9.81 * step;
         }
         t += step;
-        if t >= until || step < 1e-9 {
+        if t >= until || rests && step < 1e-9 {
             return y;
         }
-        if fall <= meet {
-            (y[0], v[0]) = (0.0, -0.6 * v[0]);
+        if falls <= meets {
+            rests = step < 1e-9;
+            (y[0], v[0]) = (0.0, if rests { 0.0 } else { -0.6 * v[0] });
+        } else if rests {
+            v[1] *= -0.5;
         } else {
             let impulse = 1.5 * (v[0] - v[1]) / (1.0 / 2.0 + 1.0);
             (v[0], v[1]) = (v[0] - impulse / 2.0, v[1] + impulse);
