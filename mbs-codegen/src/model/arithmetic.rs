@@ -288,6 +288,7 @@ impl Elaborator<'_> {
             "angular_velocity" => "e",
             "d" => "z, u",
             "distance" | "outward" => "A, cam",
+            "place" => "w, cam",
             "dot" | "cross" | "min" | "max" | "hypot" => "a, b",
             _ => "x",
         };

@@ -17,7 +17,7 @@ use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
 use super::{ConstraintRow, functions};
 use crate::diagnostics::nearest;
-use crate::symbolic::Binary;
+use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator};
 
 /// Relative error of a period as a part of a turn: that of its decimals.
@@ -100,7 +100,7 @@ fn is_point(work: &mut Elaborator<'_>, value: &Value, what: &str) -> Result<[Sca
 }
 
 impl Elaborator<'_> {
-    /// `distance(A, curve)` or `outward(A, curve)`, where `curve` is the instruction before the call.
+    /// `distance(A, curve)`, `outward(A, curve)` or `place(w, curve)`, where `curve` is the instruction before the call.
     pub(super) fn of_curve(
         &mut self,
         function: &str,
@@ -112,12 +112,18 @@ impl Elaborator<'_> {
         let curve = match curve {
             Some(Instruction { operation: Operation::Name(name), span }) => self.curve_of(name, *span)?,
             _ => {
-                let help = format!(
-                    "write `{function}(A, cam)`, a point and a curve; between points it is `norm(A - B)`"
-                );
+                let help = match function {
+                    "place" => "write `place(w, cam)`, an angle and a curve".to_string(),
+                    _ => format!(
+                        "write `{function}(A, cam)`, a point and a curve; between points it is `norm(A - B)`"
+                    ),
+                };
                 return Err(self.fault(span, format!("`{function}` ends with no curve"), help));
             }
         };
+        if function == "place" {
+            return self.place(&curve, &point, span);
+        }
         let seen = self.seen(&curve, &point, span)?;
         let slope = self.radius(&curve, 1, seen.angle, span)?;
         // 1/√(1 + (R′/r)²) = r/√(r² + R′²), with no quotient that another one waits for.
@@ -139,6 +145,23 @@ impl Elaborator<'_> {
                 Ok(Value { shape: vec![2], items, span })
             }
         }
+    }
+
+    /// The point of the curve at the polar angle `angle` in its own axes: C + R(w) e(w + θ).
+    fn place(&mut self, curve: &Curve, angle: &Value, span: Span) -> Result<Value, Fault> {
+        let angle = self.scalar(angle, "`place`", angle.span)?;
+        self.number(angle, "the place on a curve", angle.span)?;
+        let radius = self.radius(curve, 0, angle, span)?;
+        let turned = self.scalar(&curve.turned, "`turned`", span)?;
+        let number = Quantity::Known(Dimension::NUMBER);
+        let direction = self.binary_scalar(Binary::Add, angle, turned, number, span)?;
+        let mut items = Vec::new();
+        for (function, centre) in [Unary::Cos, Unary::Sin].into_iter().zip(&curve.centre.items) {
+            let part = self.unary_scalar(function, direction, number, span)?;
+            let part = self.multiply(radius, part, span)?;
+            items.push(self.binary_scalar(Binary::Add, *centre, part, radius.quantity, span)?);
+        }
+        Ok(Value { shape: vec![2], items, span })
     }
 
     /// The curve of a name.

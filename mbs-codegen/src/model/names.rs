@@ -40,8 +40,8 @@ const OTHER_FUNCTIONS: [&str; 15] = [
     "der2",
 ];
 
-/// Functions of a point and a curve.
-pub const OF_CURVES: [&str; 2] = ["distance", "outward"];
+/// Functions of a point and a curve, and of an angle and a curve.
+pub const OF_CURVES: [&str; 3] = ["distance", "outward", "place"];
 
 /// The function of partial derivatives.
 pub const PARTIAL: &str = "d";

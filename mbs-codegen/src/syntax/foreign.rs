@@ -16,7 +16,7 @@ pub const NUMBER_TYPES: [&str; 20] = [
 ];
 
 /// Functions that a text calls by these names; a test compares them with those that have a meaning.
-pub const CALLED: [&str; 35] = [
+pub const CALLED: [&str; 36] = [
     "sqrt",
     "exp",
     "ln",
@@ -51,6 +51,7 @@ pub const CALLED: [&str; 35] = [
     "der2",
     "distance",
     "outward",
+    "place",
     "d",
 ];
 

@@ -1,7 +1,7 @@
 //! Words that begin a statement; [`super::statement`] calls the reader of each.
 
 /// Words that begin a statement of this version.
-pub const STATEMENTS: [&str; 30] = [
+pub const STATEMENTS: [&str; 31] = [
     "const",
     "param",
     "input",
@@ -9,6 +9,7 @@ pub const STATEMENTS: [&str; 30] = [
     "coord",
     "let",
     "curve",
+    "foot",
     "constraint",
     "drive",
     "branch",

@@ -12,6 +12,7 @@ mod dynamics;
 mod expression;
 #[cfg(test)]
 mod expression_tests;
+mod foot;
 mod for_loop;
 mod foreign;
 mod foreign_words;

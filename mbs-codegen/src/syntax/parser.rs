@@ -26,6 +26,8 @@ pub struct Parser<'a> {
     pub diagnostics: &'a mut Diagnostics,
     /// Declarations and scenes that were given up after their name.
     pub faulty: Vec<StatementKind>,
+    /// What a statement stands for beside the one that its reader returned.
+    pub more: Vec<StatementKind>,
     /// Names behind the word `function`.
     functions: BTreeSet<&'a str>,
     /// Names behind words that begin a statement.
@@ -49,7 +51,7 @@ impl<'a> Parser<'a> {
         };
         let functions = behind(|word| word == "function");
         let declared = behind(|word| STATEMENTS.contains(&word));
-        Parser { tokens, next: 0, diagnostics, faulty: Vec::new(), functions, declared }
+        Parser { tokens, next: 0, diagnostics, faulty: Vec::new(), more: Vec::new(), functions, declared }
     }
 
     /// `true` if a statement declares this name, as far as the words before names tell.

@@ -7,6 +7,7 @@ use super::curve;
 use super::declaration::{read_const, read_coord, read_function, read_input, read_let, read_param};
 use super::dynamics;
 use super::expression::expression;
+use super::foot::read_foot;
 use super::for_loop::read_loop;
 use super::foreign;
 use super::foreign_words;
@@ -42,6 +43,7 @@ pub fn parse(tokens: &[Token], diagnostics: &mut Diagnostics) -> Vec<Statement> 
             }
             Err(_) => resynchronise(&mut parser, start),
         }
+        statements.extend(parser.more.drain(..).map(|kind| Statement { docs: Vec::new(), kind }));
         let faulty = parser.faulty.drain(..).map(|kind| Statement { docs: Vec::new(), kind });
         statements.extend(faulty);
     }
@@ -235,6 +237,7 @@ fn reader(word: &str) -> Option<Reader> {
         "coord" => read_coord,
         "let" => read_let,
         "curve" => curve::read_curve,
+        "foot" => read_foot,
         "constraint" => read_constraint,
         "drive" => read_drive,
         "branch" => read_branch,

@@ -6,9 +6,9 @@ use crate::block_solvers::gauss_newton::gauss_newton;
 use crate::block_solvers::levenberg_marquardt::levenberg_marquardt;
 use crate::block_solvers::newton::{all_finite, newton, within};
 use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::mechanism::block::{Block, BlockSolver};
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::redundant_widths::Widths;
 use crate::scalar::number::Real;
 
 /// As [`Newton`](crate::Newton), with at most [`Budget::evaluations`] in each block; where they do not do, the best

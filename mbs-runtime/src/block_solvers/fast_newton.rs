@@ -2,10 +2,10 @@
 
 use crate::block_solvers::convergence::{own_rounding, required};
 use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::{select, weights as reciprocals};
 use crate::mechanism::block::{Block, BlockSolver};
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::redundant_widths::Widths;
 use crate::scalar::number::Scalar;
 
 /// Evaluations of a block at most. From a good prediction it takes two; a step so long that four do not do is worth

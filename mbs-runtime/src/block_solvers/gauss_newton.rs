@@ -5,10 +5,10 @@ use crate::block_solvers::levenberg_marquardt::{OTHER_STARTS, TRIALS, levenberg_
 use crate::block_solvers::multistart::displaced;
 use crate::block_solvers::newton::{Attempt, ITERATIONS, all_finite, capped, largest_ratio, within};
 use crate::linear_algebra::rectangular::Orthogonal;
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::{select, times};
 use crate::mechanism::block::Block;
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::redundant_widths::Widths;
 use crate::scalar::number::Scalar;
 
 /// Result of Gauss–Newton.
@@ -55,7 +55,8 @@ impl<T: Scalar, const K: usize> Settled<T, K> {
 
 /// Gauss–Newton from `start` in the lanes of `active`; the others stay. At most `iterations` steps.
 ///
-/// A step is the minimum-norm least-squares solution of all rows in the reference metric. The least residual is reached
+/// A step is the minimum-norm least-squares solution of all rows in the reference metric, where rows with a width yield to the
+/// others. The least residual is reached
 /// where the next step would close no more than every row's tolerance: the rest is rounding or within the widths, or
 /// the rows contradict each other. So contradicting rows are told from a method that ran out of iterations.
 /// Source: Nocedal & Wright 2006, §10.3.
@@ -82,7 +83,7 @@ pub(crate) fn gauss_newton<T: Scalar, const K: usize, const M: usize>(
         if T::all(!open) {
             break;
         }
-        let (factors, _) = Orthogonal::factorize(&jacobian, &block.row_scales, &block.coordinate_scales);
+        let factors = Orthogonal::yielding(&jacobian, &block.row_scales, &block.coordinate_scales, widths);
         let step = factors.solve(&residuals.map(|r| -r));
         let change = times(&jacobian, &step);
         let mut allowances = outer_rounding(extent, &block.coordinate_scales, &jacobian);

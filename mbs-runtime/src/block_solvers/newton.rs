@@ -6,10 +6,10 @@ use crate::block_solvers::levenberg_marquardt::{TRIALS, levenberg_marquardt};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::is_regular;
 use crate::linear_algebra::orthogonal::minimum_norm;
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::select;
 use crate::mechanism::block::{Block, BlockSolver};
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::redundant_widths::Widths;
 use crate::scalar::number::Scalar;
 use crate::tolerances::singular;
 

@@ -1,9 +1,9 @@
 //! Watching a solver at work: each iterate of each block, for teaching and for diagnosis.
 
 use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::mechanism::block::{Block, BlockSolver};
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::roots::Roots;
 use crate::scalar::number::Scalar;
 

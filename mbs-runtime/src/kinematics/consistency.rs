@@ -2,9 +2,9 @@
 
 use crate::failure::conflicting_rows::ConflictingRows;
 use crate::failure::{DerivativeOrder, Failure, FailureKind};
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::{largest_difference, times};
 use crate::mechanism::Mechanism;
-use crate::mechanism::redundant_widths::largest_width;
 use crate::scalar::number::Real;
 use crate::tolerances::singular::LEAST_MARGIN;
 
@@ -24,8 +24,8 @@ struct RateEquations<'a, R, const N: usize, const M: usize> {
     known: R,
     /// Margin to singularity of Φ_q.
     margin: R,
-    /// Largest width that the text states, in the reference metric.
-    width: R,
+    /// Contradiction that each row may keep in position, in the reference metric: M.
+    granted: &'a [R; M],
 }
 
 /// Contradiction in the rates `qd` and `qdd` (N each) of a mechanism with more rows than coordinates, if there is
@@ -41,11 +41,14 @@ pub(crate) fn disagreement<S: Mechanism<R, N, M>, R: Real, const N: usize, const
 ) -> Option<Failure> {
     let zero = R::constant(0.0);
     let speed = largest_difference(qd, &[zero; N], &mechanism.coordinate_scales(parameters));
-    let width = largest_width(&mechanism.widths(parameters), &mechanism.row_scales(parameters));
+    let (widths, row_scales) = (mechanism.widths(parameters), mechanism.row_scales(parameters));
+    let mut granted = Widths::from(widths).granted(&row_scales);
+    granted.iter_mut().zip(&row_scales).for_each(|(granted, scale)| *granted = *granted / *scale);
+    let granted = &granted;
     let (phi_t, gamma) = (mechanism.phi_t(parameters, position), mechanism.gamma(parameters, position, qd));
     let right = &phi_t.map(|rate| -rate);
     let velocities =
-        RateEquations { rates: qd, right, level: DerivativeOrder::Velocity, known: zero, margin, width };
+        RateEquations { rates: qd, right, level: DerivativeOrder::Velocity, known: zero, margin, granted };
     let known = speed * speed;
     let accelerations = RateEquations {
         rates: qdd,
@@ -53,7 +56,7 @@ pub(crate) fn disagreement<S: Mechanism<R, N, M>, R: Real, const N: usize, const
         level: DerivativeOrder::Acceleration,
         known,
         margin,
-        width,
+        granted,
     };
     rate_failure(mechanism, parameters, position, &velocities, t)
         .or_else(|| rate_failure(mechanism, parameters, position, &accelerations, t))
@@ -79,19 +82,21 @@ fn rate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     let mut size = rates.known;
     rates.rates.iter().zip(&scales).for_each(|(rate, scale)| size = size.max((*rate / *scale).abs()));
     rates.right.iter().zip(&row_scales).for_each(|(right, scale)| size = size.max((*right / *scale).abs()));
-    let allowed = (LEAST_MARGIN.of::<R>() + R::constant(RATES_OF_WIDTH) * rates.width) / rates.margin * size;
-    let (mut worst, mut unit) = (R::constant(0.0), R::constant(1.0));
-    for (open, scale) in open.iter().zip(&row_scales) {
-        if worst < *open {
-            (worst, unit) = (*open, *scale);
+    let (mut worst, mut ratio) = ((R::constant(0.0), R::constant(0.0)), R::constant(1.0));
+    for ((open, scale), granted) in open.iter().zip(&row_scales).zip(rates.granted) {
+        let allowed = (LEAST_MARGIN.of::<R>() + R::constant(RATES_OF_WIDTH) * *granted) / rates.margin * size;
+        if ratio * allowed < *open {
+            ratio = *open / allowed;
+            worst = (*open * *scale, allowed * *scale);
         }
     }
-    (allowed < worst).then(|| {
+    let (residual, required) = worst;
+    (R::constant(1.0) < ratio).then(|| {
         FailureKind::Inconsistent {
             rows: ConflictingRows::of(S::ROWS, open.iter().map(|open| open.to_f64())),
             level: rates.level,
-            residual: (worst * unit).to_f64(),
-            required: (allowed * unit).to_f64(),
+            residual: residual.to_f64(),
+            required: required.to_f64(),
         }
         .at(t.to_f64())
     })

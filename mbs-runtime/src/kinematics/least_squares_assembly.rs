@@ -7,10 +7,10 @@ use crate::failure::conflicting_rows::ConflictingRows;
 use crate::failure::{Failure, FailureKind};
 use crate::kinematics::position::position_failure;
 use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::{extent, largest_difference};
 use crate::mechanism::block::{Block, BlockSolver};
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::Real;
 

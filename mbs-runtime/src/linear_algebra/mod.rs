@@ -10,6 +10,7 @@ pub(crate) mod lu;
 pub(crate) mod orthogonal;
 pub(crate) mod parts;
 pub(crate) mod rectangular;
+pub(crate) mod redundant_widths;
 pub(crate) mod vectors;
 
 use crate::scalar::number::{Real, Scalar};

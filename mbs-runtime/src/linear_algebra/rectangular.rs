@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::linear_algebra::orthogonal::{Pivoted, pivoted, scaled_columns};
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::scalar::number::{Real, Scalar};
 use crate::tolerances::singular;
 
@@ -17,6 +18,7 @@ const LARGEST_MEASURED_BY_VOLUME: usize = 3;
 #[derive(Clone, Copy)]
 pub struct Orthogonal<T: Scalar, const K: usize, const M: usize> {
     lanes: T::Lanes<Pivoted<T::Real, M, K>>,
+    /// Below 0 where a row yields.
     row_scales: [T; M],
     coordinate_scales: [T; K],
 }
@@ -36,14 +38,61 @@ impl<T: Scalar, const K: usize, const M: usize> Orthogonal<T, K, M> {
         (Orthogonal { lanes, row_scales: *row_scales, coordinate_scales: *coordinate_scales }, margin)
     }
 
+    /// As [`factorize`](Self::factorize), where rows with a width yield: the others are solved for, and what these leave open
+    /// is the least-squares solution of the rows that yield. The margin is that of all rows.
+    ///
+    /// Rows that yield weigh ω = ∛ε, so that what the others keep of a contradiction is ω² of it. They come last, and keep their
+    /// digits so. Source: Björck 1996, Numerical Methods for Least Squares Problems, §4.4 (weights), §5.1 (constraints).
+    pub fn factorize_yielding(
+        a: &[[T; K]; M],
+        row_scales: &[T; M],
+        coordinate_scales: &[T; K],
+        widths: &Widths<T, M>,
+    ) -> (Self, T) {
+        let (factors, margin) = Self::factorize(a, row_scales, coordinate_scales);
+        match widths.are_stated() {
+            true => (Self::yielding(a, row_scales, coordinate_scales, widths), margin),
+            false => (factors, margin),
+        }
+    }
+
+    /// The factors of [`factorize_yielding`](Self::factorize_yielding) alone.
+    pub(crate) fn yielding(
+        a: &[[T; K]; M],
+        row_scales: &[T; M],
+        coordinate_scales: &[T; K],
+        widths: &Widths<T, M>,
+    ) -> Self {
+        if !widths.are_stated() {
+            return Self::factorize(a, row_scales, coordinate_scales).0;
+        }
+        let row_scales = widths.yielding(row_scales);
+        let lanes = T::per_lane(|lane| {
+            let a = a.map(|row| row.map(|entry| entry.lane(lane)));
+            let (row_scales, scales) =
+                (row_scales.map(|scale| scale.lane(lane)), coordinate_scales.map(|scale| scale.lane(lane)));
+            let columns = scaled_columns(
+                &yielding_last(&a, &row_scales),
+                &yielding_last(&row_scales, &row_scales),
+                &scales,
+            );
+            pivoted(columns, singular::HALF_THE_DIGITS.of::<T::Real>() * singular::YIELDING_WEIGHT.of())
+        });
+        Orthogonal { lanes, row_scales, coordinate_scales: *coordinate_scales }
+    }
+
     /// The minimum-norm least-squares solution of `a x ≈ b` (M).
     pub fn solve(&self, b: &[T; M]) -> [T; K] {
         let solutions: T::Lanes<[T::Real; K]> = T::per_lane(|lane| match self.lanes.as_ref().get(lane) {
-            Some(factors) => factors.solve(
-                &b.map(|component| component.lane(lane)),
-                &self.row_scales.map(|scale| scale.lane(lane)),
-                &self.coordinate_scales.map(|scale| scale.lane(lane)),
-            ),
+            Some(factors) => {
+                let (mut b, mut row_scales) =
+                    (b.map(|component| component.lane(lane)), self.row_scales.map(|scale| scale.lane(lane)));
+                if row_scales.iter().any(|scale| *scale < T::Real::constant(0.0)) {
+                    (b, row_scales) =
+                        (yielding_last(&b, &row_scales), yielding_last(&row_scales, &row_scales));
+                }
+                factors.solve(&b, &row_scales, &self.coordinate_scales.map(|scale| scale.lane(lane)))
+            }
             None => [T::Real::constant(0.0); K],
         });
         let component = |lane: usize, k: usize| solutions.as_ref().get(lane).and_then(|x| x.get(k)).copied();
@@ -55,6 +104,22 @@ impl<T: Scalar, const K: usize, const M: usize> fmt::Debug for Orthogonal<T, K, 
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Orthogonal").field("lanes", &self.lanes.as_ref()).finish_non_exhaustive()
     }
+}
+
+/// `rows` (M) in their order, those with a scale below 0 last.
+fn yielding_last<X: Copy, R: Real, const M: usize>(rows: &[X; M], row_scales: &[R; M]) -> [X; M] {
+    let mut sorted = *rows;
+    let mut places = sorted.iter_mut();
+    for last in [false, true] {
+        for (row, scale) in rows.iter().zip(row_scales) {
+            if (*scale < R::constant(0.0)) == last
+                && let Some(place) = places.next()
+            {
+                *place = *row;
+            }
+        }
+    }
+    sorted
 }
 
 /// Margin of the columns to dependence, from the pivots, largest first; 0 where one is no number.
@@ -128,6 +193,40 @@ mod tests {
                 let [x, y] = solution(share);
                 assert!(x.abs() < 1e-2 && (y - 1.0).abs() < 1e-2, "{share}: {x} {y}");
             }
+        }
+    }
+
+    #[test]
+    fn rows_with_a_width_yield_to_the_others() {
+        let mut sequence = Sequence::new(5);
+        for _ in 0..100 {
+            let a: [[f64; 3]; 5] = sequence.matrix();
+            let [b]: [[f64; 5]; 1] = sequence.matrix();
+            // Three rows of five determine all; then two of four, and the rest is least squares of what they leave open.
+            let widths = Widths::of(&[1e-6, 0.0, 0.0, 1e-3, 0.0], &[0, 1, 2, 3, 4]);
+            let (factors, margin) = Orthogonal::factorize_yielding(&a, &[2.0; 5], &[1.0; 3], &widths);
+            assert_eq!(margin, Orthogonal::factorize(&a, &[2.0; 5], &[1.0; 3]).1);
+            let x = factors.solve(&b);
+            let open = |row: usize, x: &[f64; 3]| {
+                a[row].iter().zip(x).fold(-b[row], |sum, (entry, x)| sum + entry * x)
+            };
+            let size = |x: &[f64; 3]| x.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+            // What the weight leaves, over the square of the margin of the rows that do not yield.
+            let (_, alone) = Orthogonal::factorize(&[a[1], a[2], a[4]], &[2.0; 3], &[1.0; 3]);
+            let allowed = 1e-9 * size(&x) / (alone * alone);
+            assert!([1, 2, 4].iter().all(|row| open(*row, &x).abs() < allowed), "{x:?} {allowed:e}");
+            let widths = Widths::of(&[1e-6, 0.0, 1e-3, 0.0, 1e-9], &[0, 1, 2, 3, 4]);
+            let x = Orthogonal::factorize_yielding(&a, &[2.0; 5], &[1.0; 3], &widths).0.solve(&b);
+            // The direction that rows 1 and 3 leave open, and the gradient of the others' squares along it.
+            let [[a0, a1, a2], [c0, c1, c2]] = [a[1], a[3]];
+            let free = [a1 * c2 - a2 * c1, a2 * c0 - a0 * c2, a0 * c1 - a1 * c0];
+            let length = |v: &[f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let alone = length(&free) / (length(&a[1]) * length(&a[3]));
+            let along = |row: usize| a[row].iter().zip(free).map(|(a, f)| a * f).sum::<f64>() / length(&free);
+            let slope: f64 = [0, 2, 4].map(|row| along(row) * open(row, &x)).iter().sum();
+            let allowed = 1e-9 * size(&x) / (alone * alone);
+            assert!([1, 3].iter().all(|row| open(*row, &x).abs() < allowed), "{x:?} {allowed:e}");
+            assert!(slope.abs() < allowed, "{slope:e} {allowed:e}");
         }
     }
 

@@ -1,8 +1,8 @@
 //! Diagonal blocks and the solvers that emitted code hands them to.
 
 use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::redundant_widths::Widths;
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::roots::Roots;
 use crate::scalar::number::Scalar;
 

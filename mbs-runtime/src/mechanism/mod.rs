@@ -10,7 +10,6 @@ pub(crate) mod normal_forces;
 pub(crate) mod operations;
 pub(crate) mod outcome;
 pub(crate) mod phase;
-pub(crate) mod redundant_widths;
 pub(crate) mod reveal;
 pub(crate) mod roots;
 pub(crate) mod saved_variables;

@@ -20,6 +20,12 @@ pub(crate) const HALF_THE_DIGITS: Law = Law::root(1.0);
 /// The square of [`HALF_THE_DIGITS`].
 pub(crate) const HALF_THE_DIGITS_SQUARED: Law = Law::ulps(1.0);
 
+/// Weight of rows that yield beside those that do not: ∛ε.
+///
+/// Its square is the part of a contradiction that the other rows keep, 4e-11. What it leaves of a row that yields has ε/∛ε of
+/// its digits open in one solution, which the next iteration takes up.
+pub(crate) const YIELDING_WEIGHT: Law = Law::cube_root(1.0);
+
 /// Margin of the singular zone in `f64`.
 const ZONE_MARGIN: f64 = 1e-2;
 

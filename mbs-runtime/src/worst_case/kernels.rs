@@ -227,7 +227,9 @@ const fn orthogonal(m: u64, k: u64) -> Operations {
     let pivots = products(m * k).and(root(k)).and(select(k));
     let mean = products(m * k).and(divide(1)).and(root(1));
     let volume = divide(k).and(multiply(k)).and(compare(1)).and(select(1));
-    let mut total = in_metric(m, k).and(root(1)).and(pivots).and(mean).and(volume);
+    // Rows that yield: their scales and order.
+    let yielding = divide(1).and(multiply(1 + m)).and(select(m)).and(compare(6 * m));
+    let mut total = in_metric(m, k).and(root(1)).and(pivots).and(mean).and(volume).and(yielding);
     let (made, applied) = reflection(m);
     let mut column = 0;
     while column < k {
@@ -244,7 +246,8 @@ const fn orthogonal(m: u64, k: u64) -> Operations {
 const fn orthogonal_solve(m: u64, k: u64) -> Operations {
     let (_, of_rows) = reflection(m);
     let (made, applied) = reflection(k);
-    let mut total = divide(m).and(of_rows.times(k)).and(multiply(k)).and(applied.times(m));
+    let ordered = compare(5 * m);
+    let mut total = divide(m).and(of_rows.times(k)).and(multiply(k)).and(applied.times(m)).and(ordered);
     let mut row = 0;
     while row < k {
         total = total.and(made).and(applied.times(m - row)).and(products(row)).and(divide(1));

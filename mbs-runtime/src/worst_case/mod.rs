@@ -131,7 +131,12 @@ impl Budget {
 
 /// `Widths::granted`, added to allowances and tolerances.
 const fn widths(m: u64) -> Operations {
-    largest_width(m).and(multiply(2 * m)).and(select(2 * m)).and(compare(m)).and(select(1)).and(add(2 * m))
+    largest_width(m)
+        .and(multiply(2 * m + 3))
+        .and(select(2 * m))
+        .and(compare(m))
+        .and(select(1))
+        .and(add(2 * m))
 }
 
 /// `largest_width`
@@ -152,7 +157,9 @@ const fn factors(work: &Work) -> Operations {
         let k = block.unknowns as u64;
         if k > 0 {
             let signs = if k > 3 { k } else { 1 };
-            let factors = block.factorize().and(compare(1 + signs)).and(select(1));
+            // Rows that yield have factors of their own beside those of the margin.
+            let times = if block.rows > block.unknowns { 2 } else { 1 };
+            let factors = block.factorize().times(times).and(compare(1 + signs)).and(select(1));
             total = total.and(factors.times(block.count as u64));
         }
         rest = others;
@@ -338,12 +345,14 @@ const fn contradicted(work: &Work) -> Operations {
     let scales = work.row_scales.and(work.coordinate_scales);
     let open = work.phi_q.and(products(n * m)).and(add(m)).and(divide(m)).and(select(m));
     let size = divide(n + m).and(select(2 * (n + m)));
-    let allowed = divide(1).and(multiply(4)).and(add(1)).and(root(1)).and(compare(1 + m));
+    let allowed = divide(1 + 2 * m).and(multiply(1 + 5 * m)).and(add(m)).and(root(1)).and(compare(1 + m));
     let rates = scales.and(open).and(size).and(allowed).times(2);
     let right = work.phi_t.and(work.gamma).and(add(m)).and(multiply(1));
     let held = work.position.and(work.phi).and(work.row_scales).and(divide(m)).and(select(m));
     work.coordinate_scales
         .and(difference(n))
+        .and(widths(m))
+        .and(divide(m))
         .and(right)
         .and(rates)
         .and(held)

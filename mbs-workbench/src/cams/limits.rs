@@ -289,13 +289,61 @@ pub fn least_size(cam: &Cam, limits: &Limits, size: Size, range: [f64; 2]) -> Re
     if last == 0 {
         return finish(sizes[0], None);
     }
-    let (broken, value) = halve(sizes[last - 1], sizes[last], |value| kept(&verdicts(value)));
+    let ends = [last - 1, last].map(|at| (sizes[at], least_margin(&tried[at])));
+    let (broken, value) = crossing(ends, |value| least_margin(&verdicts(value)));
     // A hair below, one limit is broken: the active one.
     let active = match verdicts(broken) {
         Some(all) => all.into_iter().filter(|one| !one.kept).map(|one| one.limit).next(),
         None => None,
     };
     finish(value, active)
+}
+
+/// The least margin of all limits, below 0 where one is broken; without bound where there is no cam.
+fn least_margin(verdicts: &Option<Vec<Verdict>>) -> f64 {
+    let Some(all) = verdicts else { return f64::NEG_INFINITY };
+    let margin = |one: &Verdict| if one.kept { one.margin } else { one.margin.min(-f64::MIN_POSITIVE) };
+    all.iter().map(margin).fold(f64::INFINITY, f64::min)
+}
+
+/// Neighbouring sizes between which `margin` rises through 0, from two sizes with their margins.
+///
+/// Secants with weights that keep both ends moving. Three of them that leave more than half each are followed by a bisection. A secant
+/// goes to the number beyond its place, so that the other end follows. Source: Dowell and Jarratt 1971 (Illinois).
+fn crossing([below, above]: [(f64, f64); 2], margin: impl Fn(f64) -> f64) -> (f64, f64) {
+    /// Secants in a row that may leave more than half.
+    const SLOW: u32 = 3;
+    let ((mut fails, mut of_fails), (mut holds, mut of_holds)) = (below, above);
+    let (mut slow, mut raised) = (0, None);
+    for _ in 0..200 {
+        let (width, middle) = (holds - fails, 0.5 * (fails + holds));
+        if middle == fails || middle == holds {
+            break;
+        }
+        let mut next = middle;
+        if slow < SLOW && of_fails.is_finite() && of_holds > of_fails {
+            let share = of_fails / (of_fails - of_holds);
+            let beyond = middle.abs() * if share < 0.5 { f64::EPSILON } else { -f64::EPSILON };
+            next = fails + share * width + beyond;
+            if !(next > fails && next < holds) {
+                next = middle;
+            }
+        }
+        let found = margin(next);
+        let is_kept = found >= 0.0;
+        if is_kept {
+            (holds, of_holds) = (next, found)
+        } else {
+            (fails, of_fails) = (next, found)
+        }
+        // The end that stays counts half, so that the next secant falls on its side.
+        if raised == Some(is_kept) {
+            if is_kept { of_fails *= 0.5 } else { of_holds *= 0.5 }
+        }
+        raised = Some(is_kept);
+        slow = if holds - fails <= 0.5 * width || slow == SLOW { 0 } else { slow + 1 };
+    }
+    (fails, holds)
 }
 
 /// Halves between a size where `holds` is false and one where it is true, down to neighbours.

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use crate::erased::facade::{Motion, OutputCurve, spread};
+use crate::output::csv::rate_unit;
 use mbs_codegen::picture::Shape;
 
 /// Rows of the table, first and last instant included.
@@ -30,6 +31,27 @@ pub fn write(
         writeln!(out, "  {name}: {value}")?;
     }
     Ok(())
+}
+
+/// Largest contradictions of rows that yield, as pairs of name and value.
+pub fn mismatches(motion: &Motion) -> impl Iterator<Item = [String; 2]> {
+    motion.mismatches.iter().map(|row| {
+        let [position, rate, acceleration] = row.largest();
+        let unit = |order: usize| match (row.unit, order) {
+            ("1", 1) => "1/s".to_string(),
+            ("1", 2) => "1/s^2".to_string(),
+            ("1", _) => "1".to_string(),
+            (unit, order) => rate_unit(unit, order),
+        };
+        let value = format!(
+            "position {position:.2e} {} of {} allowed, rate {rate:.2e} {}, acceleration {acceleration:.2e} {}",
+            unit(0),
+            significant(row.width, 3),
+            unit(1),
+            unit(2)
+        );
+        [format!("largest mismatch of `{}` (line {})", row.name, row.line), value]
+    })
 }
 
 /// Cost and accuracy of the solver, as pairs of name and value.

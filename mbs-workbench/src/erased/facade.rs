@@ -281,10 +281,12 @@ where
         let mut stepper = self.assembled(*first)?;
         let mut motion = Motion::of(S::COORDINATES, S::OUTPUTS, stepper.outputs().as_ref());
         push(&mut motion, &stepper.frame());
+        motion.push_mismatches(stepper.mismatches());
         for (done, time) in rest.iter().enumerate() {
             progress(done + 1);
             self.lead(&mut stepper, *time)?;
             push(&mut motion, &stepper.frame());
+            motion.push_mismatches(stepper.mismatches());
         }
         progress(times.len());
         Ok(motion)

@@ -1,11 +1,13 @@
 //! Motions as plain columns.
 
 pub mod course;
+pub mod mismatch;
 pub mod power_balance;
 
 use mbs_runtime::{Energy, Entry, OutputValue};
 use serde::Serialize;
 
+use crate::motion::mismatch::MismatchCurve;
 use crate::motion::power_balance::{PowerCurve, PowerSource, works};
 
 /// A state at which functions are evaluated: `q`, `q̇`, `q̈` (N each, coordinate unit per s, s²) and `t` (s).
@@ -37,6 +39,9 @@ pub struct Motion {
     pub iterations: Vec<u32>,
     /// Margin to singularity: 0 where singular, at most 1.
     pub margin: Vec<f64>,
+    /// Contradictions of rows that yield; none of a motion from forces, which holds all rows.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mismatches: Vec<MismatchCurve>,
     /// Energies and forces, where there are masses.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dynamics: Option<Forces>,
@@ -161,7 +166,9 @@ impl Motion {
             let optional = optional.iter().filter(|values| !values.is_empty()).count();
             3 + optional + forces.loads.len() + forces.multipliers.len() + 2 * forces.supplies.len()
         });
-        4 + 3 * self.coordinates.len() + outputs.sum::<usize>() + forces.sum::<usize>()
+        4 + 3 * (self.coordinates.len() + self.mismatches.len())
+            + outputs.sum::<usize>()
+            + forces.sum::<usize>()
     }
 
     /// At most `count` instants spread evenly over the motion, first and last included, with the digits that a page shows.
@@ -187,6 +194,7 @@ impl Motion {
             closure: pick(&self.closure),
             iterations: kept.iter().map(|index| self.iterations[*index]).collect(),
             margin: pick(&self.margin),
+            mismatches: self.mismatches.iter().map(|curve| curve.picked(pick)).collect(),
             dynamics: self.dynamics.as_ref().map(|forces| forces.picked(&kept, pick)),
         }
     }

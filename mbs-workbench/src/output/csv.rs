@@ -8,7 +8,8 @@ use crate::motion::{Forces, LoadCurve};
 
 /// The motions of several runs below one header with names and units.
 ///
-/// Columns: `run`, `t`, `q`, `q̇`, `q̈` of each coordinate, value and derivatives of each output, and the solver's figures.
+/// Columns: `run`, `t`, `q`, `q̇`, `q̈` of each coordinate, value and derivatives of each output, mismatches of rows that yield,
+/// and the solver's figures.
 /// With masses also energies, loads, multipliers, powers and works. A load or multiplier that is not unique at some instant of
 /// some run is marked next to its unit. The last column has the number of rows that follow from others. Numbers are the shortest
 /// that read back as the same bits. All motions are of one mechanism.
@@ -105,6 +106,11 @@ fn columns(motion: &Motion) -> Vec<(String, &[f64])> {
             columns.extend(values.map(|values| (head(o.name, o.unit, order), values.as_slice())));
         }
     }
+    for row in &motion.mismatches {
+        for (order, values) in row.columns().into_iter().enumerate() {
+            columns.push((head(&format!("mismatch {}", row.name), row.unit, order), values));
+        }
+    }
     columns.extend(motion.dynamics.iter().flat_map(force_columns));
     columns
 }
@@ -146,6 +152,7 @@ fn quoted(cell: &str) -> String {
 mod tests {
     use super::*;
     use crate::erased::facade::{CoordinateCurve, OutputCurve};
+    use crate::motion::mismatch::MismatchCurve;
     use crate::motion::power_balance::{PowerCurve, PowerSource};
 
     fn motion() -> Motion {
@@ -169,8 +176,26 @@ mod tests {
             closure: vec![0.0, 1e-17],
             iterations: vec![3, 2],
             margin: vec![1.0, 0.5],
+            mismatches: Vec::new(),
             dynamics: None,
         }
+    }
+
+    #[test]
+    fn mismatches_of_rows_that_yield_stand_behind_the_outputs() {
+        let row = MismatchCurve {
+            name: "second",
+            unit: "m",
+            value: vec![0.5, 0.25],
+            rate: vec![1.5, 1.25],
+            acceleration: vec![2.5, 2.25],
+            ..MismatchCurve::default()
+        };
+        let text = write(&[("run", &Motion { mismatches: vec![row], ..motion() })]);
+        let header = text.lines().next().unwrap_or("");
+        let expected = "v_d ((m/s)/s),mismatch second (m),mismatch second_d (m/s),mismatch second_dd (m/s^2),closure (1)";
+        assert!(header.contains(expected), "{header}");
+        assert!(text.contains(",4.0,0.25,1.25,2.25,1e-17,"), "{text}");
     }
 
     #[test]

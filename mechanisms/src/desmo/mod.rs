@@ -18,6 +18,7 @@
 //! | `even`, `uneven` | the cam turns at constant speed, or with a harmonic on top |
 //! | `closing` | bell crank on the closing cam |
 //! | `permanent` | rows in place of contacts: pads on their cams, the finger on the valve |
+//! | `held` | one row more: the fork on the valve, which yields to the others |
 //! | `inertia`, `closing_inertia` | moments of inertia about the pivots, mass of the valve |
 //! | `contacts`, `closing_contacts` | K dⁿ (1 + D ḋ) between cam and pad, pad and valve, valve and seat |
 //! | `fitted`, `clearance` | no play, or play between the valve's end and both pads |
@@ -114,6 +115,11 @@ mechanism! {
         out opener_touch: [m; 2] = opener_pad - opener_radius*outward(opener_pad, opening_cam);
         out closer_touch: [m; 2] = closer_pad - closer_radius*outward(closer_pad, closing_cam);
         out turned: rad = sense*theta;
+    }
+    effect held {
+        /// Largest contradiction of the closing cam and the opening one.
+        param misfit: m = 10um;
+        constraint holds redundant within misfit { s == closer_way; }
     }
     effect inertia {
         param valve_mass: kg = 28gram;
@@ -226,6 +232,8 @@ mechanism! {
         trace "opener's pad": A;
         trace "closer's pad": D;
     }
+    /// The same with a contact more than coordinates: the fork on the valve. What both cams contradict each other by is its mismatch.
+    scene Held = even + closing + permanent + held;
     /// Contacts that give way, without play.
     scene Rigid = even + closing + inertia + closing_inertia + contacts + closing_contacts + fitted + helper + gravity;
     /// With play.

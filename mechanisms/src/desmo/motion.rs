@@ -7,7 +7,7 @@ use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, To
 use mbs_runtime::{Dynamic, Energy, Failure, Stepper};
 
 use super::design::{Curve, Design};
-use super::{DesmoFriction, DesmoOrdinary};
+use super::{DesmoFriction, DesmoHeld, DesmoOrdinary};
 
 /// The valvetrain with contacts, play and friction.
 pub type Valvetrain = DesmoFriction<Curve, Curve>;
@@ -46,6 +46,48 @@ pub fn against_law(
         }
     }
     Ok([errors[0], errors[1], errors[2], most - least])
+}
+
+/// Contradiction of both cams over the cam angle: the way of the fork less the one of the valve, with permanent contact.
+#[derive(Clone, Debug, Default)]
+pub struct Misfit {
+    /// Cam angle from −180 to 180 (deg).
+    pub angle: Vec<f64>,
+    /// Position (m), rate (m/rad), acceleration (m/rad²).
+    pub columns: [Vec<f64>; 3],
+}
+
+impl Misfit {
+    /// Largest magnitudes of position, rate and acceleration.
+    pub fn largest(&self) -> [f64; 3] {
+        [0, 1, 2].map(|order| self.columns[order].iter().fold(0.0, |most: f64, value| most.max(value.abs())))
+    }
+
+    /// At `places` cam angles of a turn, shifted by the share `shift` of their distance.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::assemble`] and [`Stepper::advance_to`], where the cams contradict each other by more than the text allows.
+    pub fn of(
+        design: &Design,
+        [opening, shutting]: &[Curve; 2],
+        places: u32,
+        shift: f64,
+    ) -> Result<Self, Failure> {
+        let mut mechanism: DesmoHeld<_, _> = design.moved_by(opening.clone(), shutting.clone()).scene();
+        mechanism.speed = 1.0;
+        let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0)?;
+        let mut found = Misfit::default();
+        for step in 0..places {
+            let t = TAU * (f64::from(step) + shift) / f64::from(places);
+            stepper.advance_to(t)?;
+            found.angle.push((t - PI).to_degrees());
+            for row in stepper.mismatches() {
+                let values = [row.position, row.rate, row.acceleration];
+                found.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+            }
+        }
+        Ok(found)
+    }
 }
 
 /// A turn of the cam, one value for each cam angle.

@@ -164,7 +164,7 @@ fn description(equations: &Equations, block: &BlockProgram, scope: &Scope<'_>) -
     )
 }
 
-/// The argument of `solve_redundant` with the largest contradiction allowed between `rows`.
+/// The argument of `solve_redundant` and `factorize_yielding` with the largest contradiction allowed between `rows`.
 pub fn widths(model: &Model, rows: &str) -> String {
     match model.rows.iter().any(|row| row.within.is_some()) {
         true => format!("&__mbs::Widths::of(&__mbs::Mechanism::widths(self, __p), &{rows}), "),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use crate::emit::rust::blocks::widths;
 use crate::emit::rust::code::{bind, lets, list};
 use crate::emit::rust::elimination::Eliminations;
 use crate::emit::rust::jacobian_outputs;
@@ -149,8 +150,18 @@ pub fn diagonal(
     if block.has_surplus() {
         kind = format!("__mbs::Orthogonal<T, {}, {size}>", block.coordinates.len());
         // There is no determinant, hence no orientation.
+        let given = format!("&{rows}, &{row_scales}, &{scales}");
+        let yields = |row: &usize| scope.model.rows.get(*row).is_some_and(|row| row.within.is_some());
+        let factorize = match block.rows.iter().any(yields) {
+            true => {
+                let places = list(block.rows.iter().map(usize::to_string));
+                let widths = widths(scope.model, &places);
+                format!("factorize_yielding({given}, {widths})")
+            }
+            false => format!("factorize({given})"),
+        };
         text = format!(
-            "let (__block{index}, __value) = <{kind}>::factorize(&{rows}, &{row_scales}, &{scales});\n\
+            "let (__block{index}, __value) = <{kind}>::{factorize};\n\
              let __margin = __margin.with_block(__value, {row}, {coordinate});\n"
         );
     } else {

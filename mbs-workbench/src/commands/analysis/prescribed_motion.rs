@@ -56,7 +56,8 @@ fn described(mechanism: &dyn AnyMechanism, motion: Motion) -> Result<AnalysisRes
     const TIMED: usize = 10_000;
     let timed = &motion.time[..motion.time.len().min(TIMED)];
     let step_time = mechanism.time_a_step(timed)?;
-    let figures = summary::figures(&motion, step_time).to_vec();
+    let mut figures = summary::figures(&motion, step_time).to_vec();
+    figures.extend(summary::mismatches(&motion));
     Ok(AnalysisResult::of(motion, figures))
 }
 

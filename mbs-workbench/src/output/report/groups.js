@@ -80,6 +80,18 @@ function plotted(name) {
   return traces.some(trace => trace.of === point) || !drawing.some(item => pointsOf(item).includes(point));
 }
 
+/** Contradictions of rows that yield: their largest values, then curves. */
+function createMismatches(host) {
+  const keys = ["value", "rate", "acceleration"];
+  for (const run of runs) {
+    for (const row of run.mismatches || []) {
+      const most = keys.map((key, order) => `${powered(largest([row[key]]).toExponential(1))} ${unitText(derived(row.unit, order))}`);
+      host.append(el("p", { textContent: `${runs.length > 1 ? `${run.label}, ` : ""}${row.name} (line ${row.line}): at most ${most.join(", ")}; ${powered(row.width.toExponential(1))} ${unitText(row.unit)} is allowed.` }));
+    }
+  }
+  createSeries(host, "mismatches", ["position", "rate", "acceleration"], keys);
+}
+
 function createSolver(host) {
   const integrated = runs.some(run => (forcesOf(run).closure_rate || []).length);
   const quantities = [

@@ -1,7 +1,8 @@
 // ---------------------------------------------------------------- small motions
 
 const COURSES = { stable: "var(--s2)", unstable: "var(--s1)", marginal: "var(--s0)", indifferent: "var(--s6)" };
-const significant = (x, digits = 6) => minus(String(Number(x.toPrecision(digits)))).replace(/e([+-]?)(\d+)$/, (_, sign, n) => `×10${superscript((sign === "-" ? "-" : "") + n)}`);
+const powered = text => minus(text.replace(/e([+-]?)(\d+)$/, (_, sign, n) => `×10${superscript((sign === "-" ? "-" : "") + n)}`));
+const significant = (x, digits = 6) => powered(String(Number(x.toPrecision(digits))));
 /** An eigenvalue of a mode without what rounding leaves of 0. */
 const valueOf = (mode, [real, imaginary]) => [["marginal", "indifferent"].includes(mode.course) ? 0 : real, mode.course === "indifferent" ? 0 : imaginary];
 const numbersOf = mode => mode.of.map(i => i + 1).join(", ");

@@ -151,6 +151,7 @@ if (runs.length) {
     createForcePlots(byId("loads"));
     createSeries(byId("coordinates"), "coordinates", SYMBOLS, ["q", "qd", "qdd"]);
     createSeries(byId("outputs"), "outputs", ["value", "rate", "acceleration"], ["value", "rate", "acceleration"]);
+    createMismatches(byId("mismatches"));
     createEnergy(byId("energy"));
     createSupplies(byId("energy"));
     createSolver(byId("solver"));
@@ -159,7 +160,7 @@ if (runs.length) {
   // Forces are what an inverse analysis is asked for.
   if (data.analysis === "inverse") byId("plots").after(byId("loads").parentNode, byId("fold-multipliers").parentNode);
   byId("small").parentNode.hidden = !isOfModes;
-  for (const id of ["coordinates", "outputs", "energy", "loads", "multipliers", "solver"]) byId(id).closest("section").hidden = !byId(id).childElementCount;
+  for (const id of ["coordinates", "outputs", "mismatches", "energy", "loads", "multipliers", "solver"]) byId(id).closest("section").hidden = !byId(id).childElementCount;
   if (!moves && byId("loads").querySelectorAll("tbody tr").length <= FIRST) { // beside the drawing of a rest there is room
     byId("loads").closest("section").hidden = true;
     document.querySelector("aside").append(byId("loads"));

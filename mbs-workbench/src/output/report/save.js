@@ -56,6 +56,7 @@ function csv() {
     const add = (name, unit, values) => { if (values && values.length) found.push([`${name} [${unitText(unit)}]`, values]); };
     for (const c of run.coordinates || []) ["q", "qd", "qdd"].forEach((key, i) => add(c.name + "'".repeat(i), derived(c.unit, i), c[key]));
     for (const o of run.outputs || []) ["value", "rate", "acceleration"].forEach((key, i) => add(o.name + "'".repeat(i), derived(o.unit, i), o[key]));
+    for (const o of run.mismatches || []) ["value", "rate", "acceleration"].forEach((key, i) => add(`mismatch ${o.name}${"'".repeat(i)}`, derived(o.unit, i), o[key]));
     for (const load of entriesOf(run, "loads")) add(load.name, load.unit, load.value);
     for (const row of entriesOf(run, "multipliers")) add(`lambda ${row.name}`, row.unit, row.value);
     for (const key of ["kinetic", "potential", "work"]) add(`${key} energy`.replace("work energy", "work"), "J", forcesOf(run)[key]);

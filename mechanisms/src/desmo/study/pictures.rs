@@ -3,7 +3,7 @@
 use mbs_workbench::study::Picture;
 use mbs_workbench::study::plot::{Curve as Line, Plot, Timeline};
 
-use super::super::motion::{FORCES, Turn};
+use super::super::motion::{FORCES, Misfit, Turn};
 use super::Chain;
 
 const ANGLE: &str = "cam angle (deg)";
@@ -27,6 +27,30 @@ pub fn law(chain: &Chain) -> Picture {
     plot.picture()
 }
 
+/// Mismatch of the row that yields, over the cam angle: position, rate and acceleration; `of` says which tables.
+pub fn misfits(of: &str, misfit: &Misfit) -> Vec<Picture> {
+    let largest = misfit.largest();
+    let picture = |(order, (name, unit)): (usize, (&str, &str))| {
+        let plot = Plot {
+            caption: format!("Mismatch of the fork's row, {name}, pitch curves of {of}"),
+            x: ANGLE.to_string(),
+            y: format!("over its largest value, {:.2e} {unit}", largest[order]),
+            curves: vec![Line::new(
+                name,
+                &misfit.angle,
+                &misfit.columns[order]
+                    .iter()
+                    .map(|value| value / largest[order].max(f64::MIN_POSITIVE))
+                    .collect::<Vec<_>>(),
+            )],
+            ..Plot::default()
+        };
+        plot.picture()
+    };
+    let orders = [("position", "m"), ("rate", "m/rad"), ("acceleration", "m/rad²")];
+    orders.into_iter().enumerate().map(picture).collect()
+}
+
 /// Acceleration of the valve with and without play over that of the law.
 pub fn accelerations(chain: &Chain, speed: f64, tight: &Turn, loose: &Turn) -> Picture {
     let law = |angle: &f64| chain.design.law.jet::<f64>(angle.to_radians())[2] * speed * speed * 1e-3;
@@ -40,6 +64,7 @@ pub fn accelerations(chain: &Chain, speed: f64, tight: &Turn, loose: &Turn) -> P
             Line::new("no play", &tight.angle, &scaled(tight)),
             Line::new("law", &loose.angle, &loose.angle.iter().map(law).collect::<Vec<_>>()).dashed(),
         ],
+        marks: Some(("with play the valve touches nothing".to_string(), loose.flights())),
         ..Plot::default()
     };
     plot.picture()
