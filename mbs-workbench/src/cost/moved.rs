@@ -330,7 +330,7 @@ fn curve(
         let contacts = runs.contacts(method, resolution, times).unwrap_or_default();
         let Some(mut errors) = errors(&seen, &contacts, reference, sizes, &extent.watched) else { continue };
         let expected = coarser.expected((seen, effort.steps), method.is_adaptive(), sizes, &extent.watched);
-        let verdict = verdict((numbers, method), effort.unfinished, errors.judged, expected, width);
+        let verdict = verdict((numbers, method), effort.is_warned(), errors.judged, expected, width);
         errors.width = width.filter(|_| verdict == Verdict::Hollow).unwrap_or(0.0);
         let before = points.last().and_then(|point| match point.outcome {
             Outcome::Done { errors, .. } => Some(errors.judged),
@@ -355,7 +355,7 @@ fn curve(
             Setting::Motion { resolution: Resolution::Steps(steps), .. } => f64::from(steps),
             _ => f64::NAN,
         };
-        let is_warned = |point: &Point| changes_the_problem(method) || point.effort.unfinished > 0;
+        let is_warned = |point: &Point| changes_the_problem(method) || point.effort.is_warned();
         judge_by_order(&mut points, order, rounding(numbers), steps, is_warned);
     }
     points
@@ -395,8 +395,7 @@ impl Coarser {
         let before = self.difference.replace(error);
         self.runs.push(run);
         let of_three = before.zip(self.runs.last_chunk::<3>()).map(|(before, last)| {
-            // Rejected steps make an error look too large; here one that looks too small would count.
-            let steps = last.each_ref().map(|(_, steps)| [u32::try_from(*steps).unwrap_or(u32::MAX), 0]);
+            let steps = last.each_ref().map(|(_, steps)| u32::try_from(*steps).unwrap_or(u32::MAX));
             ErrorEstimate::of([before, error], steps).trusted().is_some()
         });
         if self.runs.len() > 2 {
@@ -416,7 +415,7 @@ fn rounding(numbers: Numbers) -> f64 {
 
 fn verdict(
     (numbers, method): (Numbers, MotionMethod),
-    unfinished: u64,
+    is_warned: bool,
     error: f64,
     expected: Option<Expected>,
     width: Option<f64>,
@@ -426,7 +425,7 @@ fn verdict(
         _ if error <= WIDTHS * width => Verdict::Hollow,
         _ if error.is_nan() => Verdict::Wrong,
         Some(expected) if error > (WRONG * expected.error).max(rounding(numbers)) => {
-            if changes_the_problem(method) || unfinished > 0 || !expected.is_trusted {
+            if changes_the_problem(method) || is_warned || !expected.is_trusted {
                 Verdict::Untrusted
             } else {
                 Verdict::Wrong

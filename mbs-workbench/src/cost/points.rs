@@ -143,8 +143,9 @@ impl Point {
 /// Error over the expected one that makes a point wrong.
 pub const WRONG: f64 = 10.0;
 
-/// Judges the points of a curve of equal steps, from coarse to fine, by what the order of the method predicts from the next finer one.
-/// More than ten times that, and more than `rounding`, is wrong; or untrusted where there is a warning of the point (`is_warned`).
+/// Judges the points of a curve of equal steps, from coarse to fine, by what the order of the method predicts from finer ones: the larger of
+/// the predictions from the next two, for one alone may be small by chance. More than ten times that, and more than `rounding`, is wrong; or
+/// untrusted where there is a warning of the point (`is_warned`).
 pub fn judge_by_order(
     points: &mut [Point],
     order: i32,
@@ -154,14 +155,18 @@ pub fn judge_by_order(
 ) {
     for index in 1..points.len() {
         let (before, rest) = points.split_at_mut(index);
-        let ([.., point], [finer, ..]) = (before, rest) else { continue };
-        let Outcome::Done { errors: finest, .. } = finer.outcome else { continue };
-        let ratio = steps(finer) / steps(point);
+        let ([.., point], [next, ..]) = (before, &*rest) else { continue };
+        let own = steps(point);
+        let predicted = |finer: &Point| match finer.outcome {
+            Outcome::Done { errors, .. } => Some(errors.judged * (steps(finer) / own).powi(order)),
+            Outcome::Refused(_) => None,
+        };
+        let Some(first) = predicted(next) else { continue };
+        let error = rest.get(1).and_then(predicted).map_or(first, |second| first.max(second));
         let doubted = is_warned(point);
         let Outcome::Done { errors, expected, verdict: verdict @ Verdict::Right } = &mut point.outcome else {
             continue;
         };
-        let error = finest.judged * ratio.powi(order);
         *expected = Some(Expected { error, is_trusted: true });
         if errors.judged > (WRONG * error).max(rounding) || errors.judged.is_nan() {
             *verdict = if doubted { Verdict::Untrusted } else { Verdict::Wrong };
@@ -307,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_is_wrong_above_ten_times_what_its_order_predicts_from_the_next_finer_one() {
+    fn a_point_is_wrong_above_ten_times_what_its_order_predicts_from_finer_ones() {
         let judged = |errors: &[f64], is_warned: bool| {
             let mut points: Vec<Point> =
                 errors.iter().map(|error| point(*error, 1.0, Verdict::Right)).collect();
@@ -330,6 +335,9 @@ mod tests {
         assert_eq!(judged(&[1.61e-2, 1e-4, 6e-6], false), [Wrong, Right, Right]);
         assert_eq!(judged(&[f64::NAN, 1e-4], false), [Wrong, Right]);
         assert_eq!(judged(&[1.61e-2, 1e-4], true), [Untrusted, Right]);
+        // The second is small by chance, which the third tells.
+        assert_eq!(judged(&[1.5e-4, 7e-7, 2.3e-7, 1e-8], false), [Right; 4]);
+        assert_eq!(judged(&[4.3e-4, 1.8e-7, 3.8e-8, 2e-9], false), [Wrong, Right, Right, Right]);
     }
 
     #[test]

@@ -4,8 +4,8 @@ use core::marker::PhantomData;
 use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, Baumgarte, Counts, Determinacy, Direction, Explicit, Extrapolated, Formulation,
-    GeneralizedAlpha, Method, Penalty, Projection, Simulation, Tolerance, Unstabilized,
+    AugmentedLagrangian, Baumgarte, Determinacy, Direction, Explicit, Extrapolated, Formulation,
+    GeneralizedAlpha, Method, MethodWarning, Penalty, Projection, Simulation, Tolerance, Unstabilized,
     VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure, FailureKind, Partitioned, Real};
@@ -45,10 +45,19 @@ pub struct Effort {
     pub corrections: u64,
     /// Steps taken.
     pub steps: u64,
-    /// Iterations that ended before their corrections were rounding: the run's own warning.
+    /// Iterations that ended before their corrections were rounding: a warning of the run.
     pub unfinished: u64,
+    /// Warning of the run about its stabilisation.
+    pub warning: Option<MethodWarning>,
     /// Time of computation.
     pub elapsed: Duration,
+}
+
+impl Effort {
+    /// `true` where the run itself warns of its result.
+    pub fn is_warned(&self) -> bool {
+        self.unfinished > 0 || self.warning.is_some()
+    }
 }
 
 /// Runs of a mechanism with masses.
@@ -143,13 +152,25 @@ where
     }
 }
 
-fn effort(counts: Counts, began: Instant) -> Effort {
+/// Effort of a run in steps of `h` (s), 0 where their size is chosen by a tolerance.
+fn effort<S, X, R, const N: usize, const M: usize>(
+    run: &Simulation<S, X, R, N, M>,
+    h: f64,
+    began: Instant,
+) -> Effort
+where
+    S: Dynamic<R, N, M>,
+    X: Method<S, R, N, M>,
+    R: Real,
+{
+    let (elapsed, counts) = (began.elapsed(), run.counts());
     Effort {
         evaluations: counts.evaluations,
         corrections: counts.corrections + counts.iterations,
         steps: counts.steps,
         unfinished: counts.unfinished,
-        elapsed: began.elapsed(),
+        warning: run.doubt(R::constant(h)),
+        elapsed,
     }
 }
 
@@ -198,7 +219,7 @@ where
             }
             Purpose::Motion(None) => run.advance_to(R::constant(last))?,
         }
-        Ok(effort(run.counts(), began))
+        Ok(effort(&run, 0.0, began))
     }
 
     fn fixed(
@@ -209,6 +230,7 @@ where
         purpose: Purpose<'_>,
     ) -> Result<Effort, Failure> {
         let (first, last) = ends(times);
+        let h = (last - first) / f64::from(steps.max(1));
         let start = Simulation::start_from_text(self.mechanism.clone(), method, R::constant(first))?;
         let mut run = start.without_work();
         let began = Instant::now();
@@ -216,7 +238,7 @@ where
             Purpose::Motion(Some(see)) => see,
             Purpose::Motion(None) => {
                 run.step_to(R::constant(last), steps)?;
-                return Ok(effort(run.counts(), began));
+                return Ok(effort(&run, h, began));
             }
             Purpose::Contacts(found) => {
                 if const { !S::CONTACTS.is_empty() } {
@@ -235,7 +257,7 @@ where
                         }
                     }
                 }
-                return Ok(effort(run.counts(), began));
+                return Ok(effort(&run, h, began));
             }
         };
         see(seen(&run));
@@ -245,7 +267,7 @@ where
             run.step_to(R::constant(*time), each)?;
             see(seen(&run));
         }
-        Ok(effort(run.counts(), began))
+        Ok(effort(&run, h, began))
     }
 }
 

@@ -10,18 +10,18 @@ use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::accuracy;
 
-/// An adaptive run with two runs of coarser tolerances beside it, made by [`Simulation::with_error_estimate`].
+/// An adaptive run with two runs beside it, made by [`Simulation::with_error_estimate`].
 ///
-/// The run of ten times the tolerance differs from it by the error of that coarser run. The run of a hundred times the tolerance tells
-/// how errors follow the tolerance, so what is left of them. They do not follow where a motion is chaotic, or at rounding.
+/// A run of a tenth of the tolerance differs from it by its error. A run of ten times the tolerance tells if errors follow the tolerance.
+/// They do not where a motion is chaotic, where steps are too long for a force, or at rounding.
 #[derive(Clone, Copy)]
 pub struct Estimated<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: usize> {
-    fine: Simulation<S, X, R, N, M>,
-    /// Runs of a hundred and ten times the tolerance; none after one of them failed.
-    coarser: Option<[Simulation<S, X, R, N, M>; 2]>,
-    /// Largest differences so far: of both coarser runs, and of the fine one from the next coarser one.
+    run: Simulation<S, X, R, N, M>,
+    /// Runs of ten times and of a tenth of the tolerance; none after one of them failed.
+    beside: Option<[Simulation<S, X, R, N, M>; 2]>,
+    /// Largest differences so far: of the coarse run and the run, and of the run and the fine one.
     differences: [R; 2],
-    /// Right-hand sides of the coarser runs.
+    /// Right-hand sides of both runs beside it.
     evaluations: u64,
 }
 
@@ -35,23 +35,21 @@ pub enum ErrorEstimate<R> {
 }
 
 impl<R: Real> ErrorEstimate<R> {
-    /// That of the finest of three runs, each of a tenth of the tolerance of the one before. `looser` is the largest difference of the
-    /// first two, `tighter` of the last two. `steps` are those of all three, accepted and rejected.
+    /// That of the middle one of three runs, each of a tenth of the tolerance of the one before. `looser` is the largest difference of the
+    /// first two, `tighter` of the last two. `steps` are those that all three accepted.
     ///
-    /// It is what is left of a geometric series: `tighter` over the fall of the differences less 1. A fall counts up to 4, as a faster one may
-    /// be chance. It is trusted where the steps differ enough to tell an error, few of them are rejected, and the differences fall; else it
-    /// is `tighter`.
-    pub fn of([looser, tighter]: [R; 2], steps: [[u32; 2]; 3]) -> Self {
-        let finer = |pair: &[[u32; 2]]| matches!(pair, [[few, _], [many, _]] if is_more(*few, *many));
-        let smooth = |[accepted, rejected]: &[u32; 2]| {
-            f64::from(*rejected) <= accuracy::REJECTED * f64::from(*accepted)
-        };
+    /// It is twice `tighter`: where errors at least halve from run to run, those of all finer runs add up to no more. It is trusted where
+    /// the steps differ enough to tell an error, the differences fall, and the error is not above 0.1.
+    pub fn of([looser, tighter]: [R; 2], steps: [u32; 3]) -> Self {
+        let estimate = tighter + tighter;
         let [least, most] = accuracy::FALLS.map(R::constant);
         let falls = least * tighter <= looser && looser <= most * tighter;
-        if falls && steps.windows(2).all(finer) && steps.iter().all(smooth) {
-            ErrorEstimate::Trusted(left_of(looser, tighter))
+        let is_small = estimate <= R::constant(accuracy::COARSEST);
+        let [coarse, own, fine] = steps;
+        if falls && is_small && is_more(coarse, own) && is_more(own, fine) {
+            ErrorEstimate::Trusted(estimate)
         } else {
-            ErrorEstimate::Untrusted(tighter)
+            ErrorEstimate::Untrusted(estimate)
         }
     }
 
@@ -71,10 +69,12 @@ impl<R: Real> ErrorEstimate<R> {
     }
 }
 
-/// Remainder of a geometric series behind two of its differences, the last one `tighter`. A fall that is faster than the largest that
-/// is trusted may be chance.
+/// Remainder of a geometric series behind two of its differences, which fall by 3 at least. A fall that is faster than the largest that is
+/// trusted may be chance, and one that no order of a method explains does not go on.
 fn left_of<R: Real>(looser: R, tighter: R) -> R {
-    let fall = (looser / tighter.max(R::constant(f64::MIN_POSITIVE))).min(R::constant(accuracy::TRUSTED));
+    let [least, trusted, steep] =
+        [accuracy::FALLS_TO_ERROR[0], accuracy::TRUSTED, accuracy::STEEP].map(R::constant);
+    let fall = if steep * tighter < looser { least } else { (looser / tighter).min(trusted) };
     tighter / (fall - R::constant(1.0))
 }
 
@@ -100,7 +100,7 @@ where
     F: Formulation<S, R, N, M> + Clone,
     R: Real,
 {
-    /// With runs of ten and a hundred times the tolerance beside it, which tell the error.
+    /// With runs of a tenth and of ten times the tolerance beside it, which tell the error.
     ///
     /// ```
     /// use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
@@ -124,13 +124,16 @@ where
     /// ```
     pub fn with_error_estimate(self) -> Estimated<S, Explicit<I, F>, R, N, M> {
         let Tolerance { relative, absolute } = self.tolerance;
-        let coarser = |ratio: f64| {
-            let ratio = R::constant(ratio);
+        let with = |ratio: R| {
             let tolerance = Tolerance { relative: ratio * relative, absolute: ratio * absolute };
             self.clone().with_tolerance(tolerance)
         };
-        let coarser = Some([coarser(accuracy::RATIO * accuracy::RATIO), coarser(accuracy::RATIO)]);
-        Estimated { coarser, fine: self, differences: [R::constant(0.0); 2], evaluations: 0 }
+        let ratio = R::constant(accuracy::RATIO);
+        // No finer than numbers of this type can keep to, and a little more for rounding.
+        let least = R::constant(accuracy::ABOVE_LEAST) * Tolerance::<R>::least();
+        let finer = (least / (relative + absolute)).max(R::constant(1.0) / ratio);
+        let beside = Some([with(ratio), with(finer)]);
+        Estimated { beside, run: self, differences: [R::constant(0.0); 2], evaluations: 0 }
     }
 
     /// With a wanted error in place of a tolerance of steps. It is at most `accuracy` at the end of each
@@ -178,33 +181,30 @@ where
     }
 }
 
-/// Instants of a run to a wanted error at which it is compared: at one alone runs may agree by chance.
-const INSTANTS: usize = 4;
-
-/// The same of an estimate, which one run alone must not make small by chance.
-const INSTANTS_OF_ESTIMATE: usize = 16;
+/// Instants of a run at which it is compared: at few runs may agree by chance.
+const INSTANTS: usize = 16;
 
 /// Coordinates of a run at instants of equal distance, the end included.
-type Course<R, const N: usize, const K: usize> = [[R; N]; K];
+type Course<R, const N: usize> = [[R; N]; INSTANTS];
 
 /// A run with its course.
 type Followed<S, I, F, R, const N: usize, const M: usize> =
-    (Simulation<S, Explicit<I, F>, R, N, M>, Course<R, N, INSTANTS>);
+    (Simulation<S, Explicit<I, F>, R, N, M>, Course<R, N>);
 
 /// Moves `run` on to `until` (s); its coordinates on the way.
-fn followed<S, I, F, R, const N: usize, const M: usize, const K: usize>(
+fn followed<S, I, F, R, const N: usize, const M: usize>(
     run: &mut Simulation<S, Explicit<I, F>, R, N, M>,
     until: R,
-) -> Result<Course<R, N, K>, Failure>
+) -> Result<Course<R, N>, Failure>
 where
     S: Dynamic<R, N, M>,
     I: Embedded,
     F: Formulation<S, R, N, M>,
     R: Real,
 {
-    let mut course = [run.now.y.q; K];
+    let mut course = [run.now.y.q; INSTANTS];
     let mut places = course.iter_mut();
-    run.sample(until, K as u32, |instant| {
+    run.sample(until, INSTANTS as u32, |instant| {
         if let Some(place) = places.next() {
             *place = instant.y.q;
         }
@@ -213,11 +213,7 @@ where
 }
 
 /// Largest difference of two courses in the reference metric with these scales of the coordinates (N).
-fn difference<R: Real, const N: usize, const K: usize>(
-    a: &Course<R, N, K>,
-    b: &Course<R, N, K>,
-    scales: &[R; N],
-) -> R {
+fn difference<R: Real, const N: usize>(a: &Course<R, N>, b: &Course<R, N>, scales: &[R; N]) -> R {
     let pairs = a.iter().flatten().zip(b.iter().flatten()).zip(scales.iter().cycle());
     pairs.fold(R::constant(0.0), |largest, ((a, b), scale)| {
         let distance = ((*a - *b) / *scale).abs();
@@ -245,26 +241,26 @@ where
     F: Formulation<S, R, N, M> + Clone,
     R: Real,
 {
-    /// Moves all runs on to `until` (s). A coarser run that fails ends the estimate, not the run.
+    /// Moves all runs on to `until` (s). A run beside it that fails ends the estimate, not the run.
     ///
     /// # Errors
     /// Those of [`Simulation::advance_to`] for the run itself; nothing has changed then.
     pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
         let mut next = self.clone();
-        let fine: Course<R, N, INSTANTS_OF_ESTIMATE> = followed(&mut next.fine, until)?;
-        next.coarser = next.coarser.and_then(|[mut coarsest, mut coarse]| {
-            let before = coarsest.counts.evaluations + coarse.counts.evaluations;
-            let courses = followed(&mut coarsest, until).and_then(|a| Ok([a, followed(&mut coarse, until)?]));
-            next.evaluations += coarsest.counts.evaluations + coarse.counts.evaluations - before;
+        let own: Course<R, N> = followed(&mut next.run, until)?;
+        next.beside = next.beside.and_then(|[mut coarse, mut fine]| {
+            let before = coarse.counts.evaluations + fine.counts.evaluations;
+            let courses = followed(&mut coarse, until).and_then(|a| Ok([a, followed(&mut fine, until)?]));
+            next.evaluations += coarse.counts.evaluations + fine.counts.evaluations - before;
             let [a, b] = courses.ok()?;
-            let scales = &next.fine.metric.coordinates;
-            let found = [difference(&a, &b, scales), difference(&b, &fine, scales)];
+            let scales = &next.run.metric.coordinates;
+            let found = [difference(&a, &own, scales), difference(&own, &b, scales)];
             let [looser, tighter] = next.differences;
             // Written so that NaN stays.
             let stays = |so_far: R, new: R| new <= so_far || !so_far.is_finite();
             let largest = |so_far: R, new: R| if stays(so_far, new) { so_far } else { new };
             next.differences = [largest(looser, found[0]), largest(tighter, found[1])];
-            Some([coarsest, coarse])
+            Some([coarse, fine])
         });
         *self = next;
         Ok(())
@@ -275,18 +271,13 @@ where
     ///
     /// Without differences to tell it, an untrusted sum of the errors that the steps estimate.
     pub fn error_estimate(&self) -> ErrorEstimate<R> {
-        let Tolerance { relative, absolute } = self.fine.tolerance;
-        let local = self.fine.errors * (relative + absolute);
-        match &self.coarser {
-            None => ErrorEstimate::Untrusted(local),
-            Some([coarsest, coarse]) => {
-                let runs = [coarsest, coarse, &self.fine].map(|run| &run.adaptive);
-                let steps = runs.map(|steps| [steps.accepted, steps.rejected]);
-                match ErrorEstimate::of(self.differences, steps) {
-                    ErrorEstimate::Untrusted(value) => ErrorEstimate::Untrusted(value.max(local)),
-                    trusted => trusted,
-                }
-            }
+        let Tolerance { relative, absolute } = self.run.tolerance;
+        let local = self.run.errors * (relative + absolute);
+        let Some([coarse, fine]) = &self.beside else { return ErrorEstimate::Untrusted(local) };
+        let steps = [coarse, &self.run, fine].map(|run| run.adaptive.accepted);
+        match ErrorEstimate::of(self.differences, steps) {
+            ErrorEstimate::Untrusted(value) => ErrorEstimate::Untrusted(value.max(local)),
+            trusted => trusted,
         }
     }
 
@@ -297,12 +288,12 @@ where
 
     /// The run, to read.
     pub fn run(&self) -> &Simulation<S, Explicit<I, F>, R, N, M> {
-        &self.fine
+        &self.run
     }
 
     /// The run, to go on without an estimate.
     pub fn into_run(self) -> Simulation<S, Explicit<I, F>, R, N, M> {
-        self.fine
+        self.run
     }
 }
 
@@ -315,8 +306,9 @@ where
 {
     /// Moves on to `until` (s) by the run of three, a factor of ten in tolerance apart, that is the finest.
     ///
-    /// They are compared at four instants. The finest counts where their differences fall by at least 3 and the error that is then left
-    /// is small enough; else the three are made finer. Errors of several calls add up.
+    /// They are compared at 16 instants. The finest counts where their differences fall by 3 to 1000 and the error that is then left is
+    /// small enough; else the three are made finer. The first two have a hundred and ten times the wanted error as tolerance, and their
+    /// difference tells if a coarser or a finer one is the third. Errors of several calls add up.
     ///
     /// # Errors
     /// [`Unreachable`](FailureKind::Unreachable) where differences no longer fall, with the best error seen; those of
@@ -336,33 +328,52 @@ where
         let coarsest = R::constant(accuracy::COARSEST_STEPS);
         let mut tolerance = (self.accuracy * ratio * ratio).min(coarsest) / ratio;
         let (mut coarse, mut middle) = (at(tolerance * ratio)?, at(tolerance)?);
+        let (wanted, first) = (self.accuracy, difference(&coarse.1, &middle.1, &scales));
+        let coarser = tolerance * ratio * ratio;
+        let mut coarser = (first <= R::constant(accuracy::EASY) * wanted && coarser <= coarsest)
+            .then(|| at(coarser).ok())
+            .flatten();
+        let mut counts = first <= R::constant(accuracy::HARD) * wanted;
+        let [least, most] = accuracy::FALLS_TO_ERROR.map(R::constant);
         let mut best: Option<R> = None;
-        let wanted = self.accuracy;
         let unreachable = |best: Option<R>| {
             let best = best.map_or(f64::INFINITY, R::to_f64);
             Err(FailureKind::Unreachable { accuracy: wanted.to_f64(), best }.at(until.to_f64()))
         };
         loop {
-            tolerance = tolerance / ratio;
-            if tolerance + tolerance < Tolerance::<R>::least() {
-                return unreachable(best);
-            }
-            let fine = at(tolerance)?;
+            let fine = match coarser.take() {
+                Some(coarser) => {
+                    let fine = core::mem::replace(&mut middle, coarse);
+                    coarse = coarser;
+                    fine
+                }
+                None => {
+                    tolerance = tolerance / ratio;
+                    if tolerance + tolerance < Tolerance::<R>::least() {
+                        return unreachable(best);
+                    }
+                    at(tolerance)?
+                }
+            };
             let (first, second) =
                 (difference(&coarse.1, &middle.1, &scales), difference(&middle.1, &fine.1, &scales));
             let tells = is_finer(&fine.0, &middle.0) && is_finer(&middle.0, &coarse.0);
-            let falls = tells && second * R::constant(accuracy::FALL) <= first;
-            if falls {
+            let falls = tells && second * least <= first && first <= second * most;
+            if falls && counts {
                 let left = left_of(first, second);
                 best = Some(best.map_or(left, |best| best.min(left)));
                 if left <= wanted {
                     *self = Accurate { run: fine.0, estimate: Some(left), evaluations, ..*self };
                     return Ok(());
                 }
-            } else if tells && second <= R::constant(accuracy::NOISE) * Tolerance::<R>::least() {
+            } else if tells
+                && first < second * least
+                && second <= R::constant(accuracy::NOISE) * Tolerance::<R>::least()
+            {
                 // Rounding is all that the last digits show.
                 return unreachable(Some(best.map_or(second, |best| best.min(second))));
             }
+            counts = true;
             (coarse, middle) = (middle, fine);
         }
     }

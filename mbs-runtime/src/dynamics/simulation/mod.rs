@@ -1,6 +1,8 @@
 //! A mechanism that moves by its forces: state and mechanism in one place, one call a step.
 
 pub(crate) mod accuracy;
+#[cfg(test)]
+mod accuracy_tests;
 pub(crate) mod adaptive_run;
 pub(crate) mod checks;
 pub(crate) mod contact;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::erased::dynamics::AnyDynamics;
 use crate::erased::dynamics::direct_dynamics::{Approach, Simulated, Stabilization, Steps, equal};
-use mbs_runtime::dynamics::{Counts, ErrorEstimate, MethodWarning, MovedStart};
+use mbs_runtime::dynamics::{Counts, ErrorEstimate, MethodWarning, MovedStart, Tolerance};
 use mbs_runtime::{Failure, FailureKind};
 
 use super::super::summary::{significant, unit};
@@ -41,11 +41,11 @@ pub(super) fn direct(
     Ok(AnalysisResult { ended: end, ..AnalysisResult::of(found.motion, figures) })
 }
 
-/// Instants of a motion at which its estimated errors are taken, the end included.
-const INSTANTS: usize = 4;
+/// Numbers of instants of a motion at which its estimated errors are taken, the end included: the first that divides its own.
+const INSTANTS: [usize; 5] = [16, 12, 10, 4, 1];
 
-/// Errors of the coordinates of adaptive steps at some instants, in each unit the largest: differences from a run of ten times the
-/// tolerance. A run of a hundred times the tolerance tells if they are trusted.
+/// Errors of the coordinates of adaptive steps at some instants, in each unit the largest: by differences from a run of a tenth of the
+/// tolerance. A run of ten times the tolerance tells if they are trusted.
 fn estimated_error(
     dynamics: &dyn AnyDynamics,
     approach: &Approach,
@@ -58,28 +58,33 @@ fn estimated_error(
     }
     // Runs show instants of equal distance.
     let count = times.len() - 1;
-    let parts = if count.is_multiple_of(INSTANTS) { INSTANTS } else { 1 };
+    let parts = INSTANTS.into_iter().find(|parts| count.is_multiple_of(*parts)).unwrap_or(1);
     let instants: Vec<f64> = times.iter().step_by(count / parts).copied().collect();
-    let coarser = |ratio: f64| {
-        let steps = Steps::Adaptive { pair, tolerance: ratio * tolerance };
+    let with = |tolerance: f64| {
+        let steps = Steps::Adaptive { pair, tolerance };
         let run = dynamics.simulate(&Approach { steps, ..*approach }, &instants, &mut |_| ()).ok()?;
         run.failure.is_none().then_some(run)
     };
     let name = "estimated error".to_string();
-    let (Some(coarsest), Some(coarse)) = (coarser(100.0), coarser(10.0)) else {
-        return Some([name, "not known: runs of coarser tolerances do not go through".to_string()]);
+    // Relative and absolute tolerance add up.
+    let finer = (0.1 * tolerance).max(0.5 * Tolerance::<f64>::least());
+    let (Some(coarse), Some(fine)) = (with(10.0 * tolerance), with(finer)) else {
+        return Some([
+            name,
+            "not known: runs of ten times and a tenth of the tolerance do not go through".to_string(),
+        ]);
     };
-    let accepted = |steps: u64| u32::try_from(steps).unwrap_or(u32::MAX);
-    let steps = [&coarsest, &coarse, found].map(|run| [accepted(run.counts.steps), run.rejected]);
+    let accepted = |run: &Simulated| u32::try_from(run.counts.steps).unwrap_or(u32::MAX);
+    let steps = [&coarse, found, &fine].map(accepted);
     let mut errors: Vec<(&str, [f64; 2])> = Vec::new();
     let coordinates = found.motion.coordinates.iter().zip(&coarse.motion.coordinates);
-    for ((fine, coarse), coarsest) in coordinates.zip(&coarsest.motion.coordinates) {
+    for ((own, coarse), fine) in coordinates.zip(&fine.motion.coordinates) {
         let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let fine_q: Vec<f64> = fine.q.iter().step_by(count / parts).copied().collect();
-        let own = [apart(&coarsest.q, &coarse.q), apart(&coarse.q, &fine_q)];
-        match errors.iter_mut().find(|(of, _)| *of == fine.unit) {
-            Some((_, largest)) => *largest = [largest[0].max(own[0]), largest[1].max(own[1])],
-            None => errors.push((fine.unit, own)),
+        let q: Vec<f64> = own.q.iter().step_by(count / parts).copied().collect();
+        let found = [apart(&coarse.q, &q), apart(&q, &fine.q)];
+        match errors.iter_mut().find(|(of, _)| *of == own.unit) {
+            Some((_, largest)) => *largest = [largest[0].max(found[0]), largest[1].max(found[1])],
+            None => errors.push((own.unit, found)),
         }
     }
     let words = |(of, apart): &(&str, [f64; 2])| {
