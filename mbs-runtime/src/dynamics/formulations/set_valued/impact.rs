@@ -44,6 +44,12 @@ pub(crate) type StruckOf<S, R, const N: usize, const M: usize> = Struck<
     R,
 >;
 
+/// A state, and parameters with the modes of contacts and frictions there.
+type StateInModes<S, R, const N: usize, const M: usize> = (
+    IntegratorState<R, N, <S as Dynamic<R, N, M>>::States>,
+    <S as crate::mechanism::Mechanism<R, N, M>>::Parameters,
+);
+
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Fails where the contact at `index` among the set-valued forces is open with a gap below zero.
     ///
@@ -206,10 +212,7 @@ where
 {
     /// The state with gaps of 0 where contacts touch, its velocities on the constraints alone; and parameters with these contacts closed and
     /// with all frictions sliding.
-    fn closed<const K: usize>(
-        &mut self,
-        touching: &[bool; K],
-    ) -> Result<(IntegratorState<R, N, S::States>, S::Parameters), Failure> {
+    fn closed<const K: usize>(&mut self, touching: &[bool; K]) -> Result<StateInModes<S, R, N, M>, Failure> {
         let (model, zero, one) = (self.model, R::constant(0.0), R::constant(1.0));
         let (mut next, mut parameters) = (*self.y, *model.parameters);
         for (grip, touches) in S::grips_mut(&mut parameters).iter_mut().zip(touching) {
