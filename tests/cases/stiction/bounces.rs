@@ -105,7 +105,7 @@ fn single_precision_and_other_coefficients_bounce() {
     assert!(run.q()[0].abs() < 1e-6 && run.qd()[0] == 0.0);
     let method = Explicit::new(DormandPrince8, Projection::default());
     for e in [0.0, 0.3, 0.99, 1.0] {
-        let ball = Ball { e, ..Ball::default() };
+        let ball = Ball { e };
         let run = Simulation::start_from_text(ball, method, 0.0_f64).expect("it starts");
         let mut run = run.with_tolerance(Tolerance::new(1e-11));
         run.advance_to(20.0).expect("it bounces");
@@ -182,7 +182,7 @@ fn a_row_of_balls_shares_its_impact_as_moreau_says() {
     run.advance_to(100.0).expect("they go on");
     let balance = run.balance();
     assert!((balance.energy.kinetic - 0.5).abs() < 1e-9 && balance.defect.abs() < 1e-9, "{balance:?}");
-    let row = Row { e: 0.5, ..Row::default() };
+    let row = Row { e: 0.5 };
     let mut run = Simulation::start_from_text(row, method, 0.0_f64).expect("it starts");
     let mut last = 0.5;
     for index in 1..400 {
@@ -286,7 +286,7 @@ mechanism! {
 fn a_beam_comes_to_rest_on_three_supports_that_only_push() {
     let method = Explicit::new(DormandPrince8, Projection::default());
     for x in [0.0, 0.1, 0.45] {
-        let beam = Beam { x, ..Beam::default() };
+        let beam = Beam { x };
         let mut run = Simulation::start_from_text(beam, method, 0.0_f64).expect("it starts");
         run.advance_to(10.0).expect("it comes to rest");
         let [left, middle, right] = run.loads();
@@ -337,7 +337,7 @@ mechanism! {
 #[test]
 fn what_is_undefined_is_refused() {
     let method = Explicit::new(DormandPrince8, Projection::default());
-    let failure = Simulation::start_from_text(Below::default(), method, 0.0_f64).err().expect("refused");
+    let failure = Simulation::start_from_text(Below::default(), method, 0.0_f64).expect_err("refused");
     assert!(
         matches!(failure.kind, FailureKind::Penetration { contact, .. } if contact.name == "floor"),
         "{failure}"
