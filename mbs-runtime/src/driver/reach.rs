@@ -24,8 +24,8 @@ const HALVINGS: usize = 50;
 /// use mbs_runtime::driver::{Harmonic, reach};
 ///
 /// // A circle of 30 mm.
-/// let [inside, outside] = reach(&Harmonic { offset: 0.03, amplitude: 0.0, frequency: 1.0, phase: 0.0 });
-/// assert!(inside > 0.0298 && inside <= 0.03 && outside > 1.0_f64);
+/// let [inside, outside]: [f64; 2] = reach(&Harmonic { offset: 0.03, amplitude: 0.0, frequency: 1.0, phase: 0.0 });
+/// assert!(inside > 0.0298 && inside <= 0.03 && outside > 1.0);
 /// ```
 pub fn reach<R: Real, F: Function<R>>(radius: &F) -> [R; 2] {
     const { assert!(F::ORDER >= 2 && F::ORDER <= SMOOTH) };

@@ -9,6 +9,7 @@ mechanism! {
     drive turn: theta == 10 [rad/s]*t;
     curve cam = polar pitch about centre;
     foot w of [30mm, 0mm] on cam;
+    out gap: m = w_gap;
 }
 
 fn main() {}
