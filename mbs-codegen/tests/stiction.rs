@@ -32,6 +32,7 @@ fn code_grows_in_proportion_to_the_number_of_frictions() {
     let (first, few, many) = (each(one, none, 1), each(four, one, 3), each(twelve, four, 8));
     assert!(few <= first && many <= 1.02 * few && few <= 1.02 * many, "{first} {few} {many}");
     let plain = expand(0).to_string();
+    assert!(!expand(1).to_string().contains("HAS_RIGID_CONTACTS"));
     for word in ["SET_VALUED", "Grip", "set_valued_rows", "grips"] {
         assert!(!plain.contains(word) && expand(1).to_string().contains(word), "{word}");
     }
@@ -56,7 +57,7 @@ fn code_grows_in_proportion_to_the_number_of_rigid_contacts() {
     let (few, some, many) = (each(four, one, 3), each(twelve, four, 8), each(all, twelve, 12));
     assert!(some <= 1.02 * few && many <= 1.02 * few && few <= 1.02 * many, "{few} {some} {many}");
     let plain = expand(0).to_string();
-    for word in ["SET_VALUED", "Grip", "set_valued_rows", "restitution"] {
+    for word in ["SET_VALUED", "HAS_RIGID_CONTACTS", "Grip", "set_valued_rows", "restitution"] {
         assert!(!plain.contains(word) && expand(1).to_string().contains(word), "{word}");
     }
 }

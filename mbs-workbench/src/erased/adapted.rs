@@ -255,6 +255,7 @@ where
     const LOADS: &'static [Entry] = S::LOADS;
     const CONTACTS: &'static [Entry] = S::CONTACTS;
     const SET_VALUED: &'static [Entry] = S::SET_VALUED;
+    const HAS_RIGID_CONTACTS: bool = S::HAS_RIGID_CONTACTS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     fn gaps(

@@ -205,6 +205,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     const LOADS: &'static [Entry] = S::LOADS;
     const CONTACTS: &'static [Entry] = S::CONTACTS;
     const SET_VALUED: &'static [Entry] = S::SET_VALUED;
+    const HAS_RIGID_CONTACTS: bool = S::HAS_RIGID_CONTACTS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     // `enclosed` stays `None`: intervals know an input by its value and its rates at the start of a step.

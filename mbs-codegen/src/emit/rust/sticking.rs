@@ -48,8 +48,11 @@ pub fn items(
     }
     let _ = write!(text, "<__See as __mbs::dynamics::WithSetValuedRows<T, {n}>>::at(__see, &__rows)");
     let body = block(&text, runtime);
+    let rigid = sticking.iter().any(|row| row.restitution.is_some());
+    let rigid = rigid.then(|| quote! { const HAS_RIGID_CONTACTS: bool = true; });
     quote! {
         const SET_VALUED: &'static [#runtime::Entry] = &[#(#entries),*];
+        #rigid
         #[inline]
         fn grips(__p: &__Parameters<T>) -> &[#runtime::dynamics::Grip<T>] {
             &__p.2

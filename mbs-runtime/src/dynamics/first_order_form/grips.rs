@@ -31,7 +31,7 @@ where
     /// The impacts of contacts that close at `y`; `true` if there are any.
     #[inline(never)]
     pub(super) fn strike(&mut self, t: R, y: &mut Moving<S, R, N, M>) -> Result<bool, Failure> {
-        if self.model.first_order {
+        if const { !S::HAS_RIGID_CONTACTS } || self.model.first_order {
             return Ok(false);
         }
         let struck = self.at(t, &y.phases, |model, formulation, lambda, counts| {

@@ -97,6 +97,9 @@ where
 
     /// The impacts of contacts that close at the present instant.
     fn strike(&mut self) -> Result<(), Failure> {
+        if const { !S::HAS_RIGID_CONTACTS } {
+            return Ok(());
+        }
         let (t, y, lambda, mut counts) = (self.now.t, self.now.y, self.now.solved.lambda, self.counts);
         let method = &self.method;
         let struck = self
