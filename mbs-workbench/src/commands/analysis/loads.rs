@@ -106,6 +106,9 @@ fn settled(work: f64, error: f64) -> String {
     significant(work, digits as usize)
 }
 
+/// Energy that impacts take, over the energies of a motion, from which it is no rounding.
+const LEAST_JUMP: f64 = 1e-9;
+
 /// Energy balance: the change of the energy and the works that add up to it, as name and value.
 fn balance(forces: &Forces, active: &[&PowerCurve]) -> [String; 2] {
     let at = |values: &[f64], last: bool| {
@@ -129,6 +132,15 @@ fn balance(forces: &Forces, active: &[&PowerCurve]) -> [String; 2] {
             sum += work;
             parts.push(format!("{name} {} J", settled(work, error)));
         }
+    }
+    // The energy that impacts take: what a run leaves out of its balance.
+    let over = |values: &[f64]| at(values, true) - at(values, false);
+    let jumps = change - over(&forces.work) - over(&forces.defect);
+    if forces.work.len() == forces.kinetic.len()
+        && jumps < -LEAST_JUMP * at(&forces.kinetic, true).max(-change)
+    {
+        sum += jumps;
+        parts.push(format!("impacts {} J", settled(jumps, error)));
     }
     let value = format!(
         "{} J, work of {}; {:.1e} J between them",
