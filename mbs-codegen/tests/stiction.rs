@@ -88,7 +88,8 @@ fn wrong_rigid_contacts_are_named() {
             "`f` needs the force of a friction that sticks, or of a rigid contact",
         ),
     ] {
-        let found = said(contacts);
+        let found = said(&format!("{contacts}\nout push: N = force(c);"));
         assert!(found.contains(message), "{contacts}: {found}");
+        assert!(!found.contains("depends on itself"), "{contacts}: {found}");
     }
 }

@@ -140,10 +140,8 @@ impl Resolver<'_> {
         let full = self.numbered(name, group)?;
         let given =
             self.fields(kind, name, fields).inspect_err(|_| self.names.mark_faulty_element(&name.text))?;
-        match kind {
-            Element::Body => {
-                self.body(name, full, &given).inspect_err(|_| self.names.mark_faulty_element(&name.text))
-            }
+        let read = match kind {
+            Element::Body => self.body(name, full, &given),
             Element::Gravity => self.gravity(name, &given),
             Element::Tsda => self.line(name, full, &given, fields),
             Element::Friction => self.friction(name, full, &given),
@@ -164,7 +162,9 @@ impl Resolver<'_> {
                 self.force(name, full, Action::Turn(turn));
                 Ok(())
             }
-        }
+        };
+        // Uses of its force are no faults of their own.
+        read.inspect_err(|_| self.names.mark_faulty_element(&name.text))
     }
 
     fn line(&mut self, name: &Name, full: String, given: &Given, fields: &[Field]) -> Result<(), Fault> {
