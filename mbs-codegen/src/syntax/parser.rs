@@ -26,7 +26,7 @@ pub struct Parser<'a> {
     pub diagnostics: &'a mut Diagnostics,
     /// Declarations and scenes that were given up after their name.
     pub faulty: Vec<StatementKind>,
-    /// What a statement stands for beside the one that its reader returned.
+    /// Statements that one statement stands for, beside the one that its reader returned.
     pub more: Vec<StatementKind>,
     /// Names behind the word `function`.
     functions: BTreeSet<&'a str>,
