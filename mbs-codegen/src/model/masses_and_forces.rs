@@ -11,7 +11,7 @@ use super::initialiser::{fits_shape, initialiser};
 use super::non_negative::{Least, NonNegative};
 use super::resolver::Resolver;
 use super::rotation::{moments, parameters};
-use super::springs::{SpringDamper, Turn};
+use super::springs::SpringDamper;
 use super::unit_faults::Place;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Value};
@@ -146,22 +146,7 @@ impl Resolver<'_> {
             Element::Tsda => self.line(name, full, &given, fields),
             Element::Friction => self.friction(name, full, &given),
             Element::Contact => self.contact(name, full, &given),
-            Element::Rsda => {
-                let constant = ["stiffness", "rest"].iter().filter_map(|field| given.scalar(field));
-                let stores = constant.into_iter().all(|id| self.model.is_constant(id));
-                let Some(angle) = given.scalar("angle") else { return Err(Fault) };
-                let turn = Turn {
-                    angle,
-                    stiffness: given.scalar("stiffness"),
-                    rest: given.scalar("rest"),
-                    damping: given.scalar("damping"),
-                    torque: given.scalar("torque"),
-                    stores,
-                };
-                self.names.seen.define(&name.text, Seen::Turn(turn));
-                self.force(name, full, Action::Turn(turn));
-                Ok(())
-            }
+            Element::Rsda => self.turn(name, full, &given),
         };
         // Uses of its force are no faults of their own.
         read.inspect_err(|_| self.names.mark_faulty_element(&name.text))
