@@ -57,6 +57,7 @@ mod shared;
 pub mod springs;
 mod states_and_starts;
 mod surplus;
+mod torsion_spring;
 mod turns;
 mod undeclared;
 mod unit_cures;

@@ -1,12 +1,6 @@
 //! Springs, dampers and actuators on lengths and angles.
 
-use super::dynamics::Action;
 use super::expression::Id;
-use super::forces_by_name::Force as Seen;
-use super::masses_and_forces::Given;
-use super::resolver::Resolver;
-use super::value::Fault;
-use crate::syntax::ast::Name;
 
 /// Spring, damper and actuator between two points: tension k (l − l₀) + c l̇ + f.
 ///
@@ -44,24 +38,4 @@ pub struct Turn {
     pub torque: Option<Id>,
     /// `true` if the spring stores energy: k and α₀ are of parameters alone.
     pub stores: bool,
-}
-
-impl Resolver<'_> {
-    /// A torque against an angle.
-    pub(super) fn turn(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
-        let constant = ["stiffness", "rest"].iter().filter_map(|field| given.scalar(field));
-        let stores = constant.into_iter().all(|id| self.model.is_constant(id));
-        let Some(angle) = given.scalar("angle") else { return Err(Fault) };
-        let turn = Turn {
-            angle,
-            stiffness: given.scalar("stiffness"),
-            rest: given.scalar("rest"),
-            damping: given.scalar("damping"),
-            torque: given.scalar("torque"),
-            stores,
-        };
-        self.names.seen.define(&name.text, Seen::Turn(turn));
-        self.force(name, full, Action::Turn(turn));
-        Ok(())
-    }
 }
