@@ -1,6 +1,7 @@
-//! Newton's method without safeguards, for steps close to a regular position; the caller checks the result.
+//! Newton's and Chebyshev's method without safeguards, for steps close to a regular position; the caller checks the result.
 
-use crate::block_solvers::convergence::{own_rounding, required};
+use crate::block_solvers::convergence::{own_rounding, required, rounding_shows};
+use crate::block_solvers::step_rules::{ChebyshevStep, NewtonStep, RootStep, StepRule};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::{select, weights as reciprocals};
@@ -59,13 +60,30 @@ impl<T: Scalar> FastNewton<T> {
         self.ratio = self.ratio.max(ratio);
     }
 
-    /// [`solve`](BlockSolver::solve) in several lanes.
+    /// Iterates by `step`, which gives what to subtract from a point with its Jacobian and its residuals.
+    #[inline(always)]
+    fn solve_by<const K: usize, F: Factorization<T, K>, S: StepRule<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        step: S,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let x = match T::LANES {
+            1 => self.solve_alone::<K, F, S>(block, x, evaluate, step),
+            _ => self.solve_lanes::<K, F, S>(block, x, evaluate, step),
+        };
+        (x, T::per_lane(|_| Outcome::Converged))
+    }
+
+    /// [`solve_by`](Self::solve_by) in several lanes.
     #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
-    fn solve_lanes<const K: usize, F: Factorization<T, K>>(
+    fn solve_lanes<const K: usize, F: Factorization<T, K>, S: StepRule<T, K>>(
         &mut self,
         block: &Block<T, K>,
         mut x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        step: S,
     ) -> [T; K] {
         let own = block.row_scales.map(own_rounding);
         // A division is paid for in every step, a reciprocal of a number of the text is one.
@@ -76,16 +94,18 @@ impl<T: Scalar> FastNewton<T> {
             evaluations += 1;
             counts = T::select(done, counts, T::constant(f64::from(evaluations)));
             done = done | within(&residuals, &own);
-            if evaluations > 1 && !T::all(done) {
+            let asked = T::mask(!S::SECOND_ORDER || evaluations == EVALUATIONS)
+                | may_be_rounding(&residuals, &own, &x, &block.coordinate_scales);
+            if evaluations > 1 && !T::all(done | !asked) {
                 let whole = granted(residuals, block.row_scales, x, jacobian);
-                let closes = !done & within(&residuals, &whole);
+                let closes = asked & !done & within(&residuals, &whole);
                 weights = select(closes, &reciprocals(&whole), &weights);
                 done = done | closes;
             }
             if T::all(done) || evaluations == EVALUATIONS {
                 break residuals;
             }
-            let step = F::newton_step(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
+            let step = step.of::<F>(block, &x, &jacobian, &residuals);
             let mut next = x;
             for (component, change) in next.iter_mut().zip(&step) {
                 *component = *component - *change;
@@ -99,19 +119,22 @@ impl<T: Scalar> FastNewton<T> {
         x
     }
 
-    /// [`solve`](BlockSolver::solve) in one lane, with the rarely needed code kept apart.
+    /// [`solve_by`](Self::solve_by) in one lane, with the rarely needed code kept apart.
     #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
-    fn solve_alone<const K: usize, F: Factorization<T, K>>(
+    fn solve_alone<const K: usize, F: Factorization<T, K>, S: StepRule<T, K>>(
         &mut self,
         block: &Block<T, K>,
         mut x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        step: S,
     ) -> [T; K] {
         let own = block.row_scales.map(own_rounding);
         let (mut residuals, mut jacobian) = evaluate(&x);
         let mut evaluations = 1;
         while !all_within(&residuals, &own) {
-            if evaluations > 1 {
+            // What is far from closing goes on without the call.
+            let asked = || T::all(may_be_rounding(&residuals, &own, &x, &block.coordinate_scales));
+            if evaluations > 1 && (!S::SECOND_ORDER || asked() || evaluations == EVALUATIONS) {
                 let (ratio, row) = worst_granted(residuals, block.row_scales, x, jacobian, block.rows);
                 if T::all(ratio.less(T::constant(1.0))) {
                     self.evaluations = self.evaluations.max(evaluations);
@@ -123,7 +146,7 @@ impl<T: Scalar> FastNewton<T> {
                     break;
                 }
             }
-            let step = F::newton_step(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
+            let step = step.of::<F>(block, &x, &jacobian, &residuals);
             for (component, change) in x.iter_mut().zip(&step) {
                 *component = *component - *change;
             }
@@ -139,6 +162,7 @@ impl<T: Scalar> FastNewton<T> {
 
 impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
     const INLINED_PER_BLOCK: bool = true;
+    const SECOND_ORDER: bool = true;
 
     #[inline(always)]
     fn solve<const K: usize, F: Factorization<T, K>>(
@@ -147,11 +171,29 @@ impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
         x: [T; K],
         evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let x = match T::LANES {
-            1 => self.solve_alone::<K, F>(block, x, evaluate),
-            _ => self.solve_lanes::<K, F>(block, x, evaluate),
-        };
-        (x, T::per_lane(|_| Outcome::Converged))
+        self.solve_by::<K, F, _>(block, x, evaluate, NewtonStep)
+    }
+
+    #[inline(always)]
+    fn solve_curved<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        curvature: impl Fn(&[T; K], &[T; K]) -> [T; K],
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.solve_by::<K, F, _>(block, x, evaluate, ChebyshevStep(curvature))
+    }
+
+    #[inline(always)]
+    fn solve_round<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        second: &[T; K],
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.solve_by::<K, F, _>(block, x, evaluate, RootStep(*second))
     }
 
     /// Rows that may contradict each other are always looked at.
@@ -177,6 +219,18 @@ fn within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) ->
         within = within & residual.abs().less(*tolerance);
     }
     within
+}
+
+/// Lanes in which the whole tolerances, which [`granted`] computes, may be above residuals that are not within their rows' `own`
+/// rounding.
+#[inline(always)]
+fn may_be_rounding<T: Scalar, const K: usize>(
+    residuals: &[T; K],
+    own: &[T; K],
+    x: &[T; K],
+    coordinate_scales: &[T; K],
+) -> T::Mask {
+    within(residuals, &own.map(|own| own + own)) | rounding_shows(x, coordinate_scales)
 }
 
 /// [`within`] as decisions, row by row.

@@ -1,5 +1,6 @@
 //! The block-triangular solution of positions.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use crate::emit::rust::code::{lets, list};
@@ -7,7 +8,8 @@ use crate::emit::rust::elimination::Eliminations;
 use crate::emit::rust::scope::{Scope, local, number};
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::program::{BlockMethod, BlockProgram, Program, System};
+use crate::program::{BlockMethod, BlockProgram, Program, Section, System};
+use crate::structure::curvature::Curvature;
 use crate::structure::dyad::Dyad;
 use crate::symbolic::NodeId;
 
@@ -63,7 +65,7 @@ fn newton(
     scope: &Scope<'_>,
     text: &mut String,
 ) {
-    let System { section, kept, phi, phi_q, branches, branch_section, dyad, .. } = system;
+    let System { section, kept, phi, phi_q, branches, branch_section, dyad, curvature, .. } = system;
     let inner = Scope { unknowns: &block.coordinates, ..*scope };
     let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
     let size = block.coordinates.len();
@@ -89,10 +91,19 @@ fn newton(
         (None, true) => format!("solve::<{size}, {factors}>"),
         (None, false) => format!("solve_branched::<{size}, {factors}>"),
     };
-    let call = format!("let (__x, __block) = __solver.{method}");
+    let _ = write!(text, "let __described = {description};\nlet (__x, __block) = ");
+    if let Some((curvature, section)) = curvature {
+        *text += "if const { __S::SECOND_ORDER } {\n";
+        let given = format!(
+            "::<{size}, {factors}>(&__described, {starts}, #[inline(always)] |__x| __evaluate(__x), "
+        );
+        curved((curvature, section), kept, (&inner, &given), text);
+        *text += "} else {\n";
+    }
+    let call = format!("__solver.{method}");
     let rows = list(block.rows.iter().map(usize::to_string));
     let widths = if surplus { widths(scope.model, &rows) } else { String::new() };
-    let _ = write!(text, "{call}(&{description}, {widths}{starts}, #[inline(always)] |__x| {EVALUATED}");
+    let _ = write!(text, "{call}(&__described, {widths}{starts}, #[inline(always)] |__x| {EVALUATED}");
     if !branches.is_empty() {
         *text += ", |__x| {\n";
         lets(branch_section, &inner, text);
@@ -107,7 +118,7 @@ fn newton(
         lets(section, scope, text);
         let _ = writeln!(text, "{}\n}}", formula(dyad, &mut |id| scope.operand(id)));
     }
-    *text += ");\n";
+    *text += if curvature.is_some() { ")\n};\n" } else { ");\n" };
     if !kept.is_empty() {
         *text += "let mut __values = __kept.get();\n\
                   if !__S::INLINED_PER_BLOCK && !__mbs::__private::is_same(&__values.0, &__x) {\n\
@@ -118,6 +129,31 @@ fn newton(
         let _ = writeln!(text, "__q[{coordinate}] = __x[{index}];");
     }
     *text += "let __outcome = __mbs::__private::first_failure::<T>(__outcome, __block);\n";
+}
+
+/// Solution of a dyad with the second derivatives of its rows; `given`: what it is called with besides.
+fn curved(
+    (curvature, section): (&Curvature, &Section),
+    kept: &[NodeId],
+    (inner, given): (&Scope<'_>, &str),
+    text: &mut String,
+) {
+    let nodes = curvature.nodes();
+    let values = list(nodes.iter().map(|id| inner.or_zero(*id)));
+    if let Curvature::Round(_) = curvature {
+        lets(section, inner, text);
+        let _ = writeln!(text, "__solver.solve_round{given}&{values})");
+        return;
+    }
+    let _ = writeln!(text, "__solver.solve_curved{given}#[inline(always)] |__x, __step| {{");
+    let mut used: BTreeSet<NodeId> = nodes.into_iter().flatten().collect();
+    used.extend(section.lines.iter().flat_map(|line| line.operands(inner.graph)));
+    if kept.iter().any(|id| used.contains(id)) {
+        let name = |id: &NodeId| if used.contains(id) { local(*id) } else { "_".into() };
+        let _ = writeln!(text, "let (_, {}) = __kept.get();", list(kept.iter().map(name)));
+    }
+    lets(section, inner, text);
+    let _ = writeln!(text, "{values}\n}})");
 }
 
 /// Both positions of `Dyad::… { … }` or `Single::… { … }` with its coefficients, which are written in the order of the text.

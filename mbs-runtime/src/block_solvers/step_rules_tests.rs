@@ -1,0 +1,124 @@
+//! Orders of the steps, and what they save on dyads.
+
+use super::*;
+use crate::block_solvers::fast_newton::FastNewton;
+use crate::linear_algebra::direct2::Direct2;
+use crate::mechanism::block::BlockSolver;
+use crate::scalar::lanes::Lanes;
+
+fn block<T: Scalar>() -> Block<T, 2> {
+    Block {
+        rows: [4, 5],
+        coordinates: [0, 1],
+        angles: [false; 2],
+        row_scales: [T::constant(1.0); 2],
+        coordinate_scales: [T::constant(1.0); 2],
+    }
+}
+
+/// Circles of radii 0.7 and 0.6 around 0 and (0.9, 0.2), the second one written thrice over and its sides exchanged.
+fn circles<T: Scalar>([x, y]: &[T; 2]) -> ([T; 2], [[T; 2]; 2]) {
+    let number = T::constant;
+    let (u, v) = (*x - number(0.9), *y - number(0.2));
+    let residuals = [*x * *x + *y * *y - number(0.49), number(3.0) * (number(0.36) - u * u - v * v)];
+    (residuals, [[number(2.0) * *x, number(2.0) * *y], [number(-6.0) * u, number(-6.0) * v]])
+}
+
+/// Second derivatives of both circles.
+const SECOND: [f64; 2] = [2.0, -6.0];
+
+/// Two bars of 0.7 and 0.6 between 0 and (0.9, 0.2), by their angles.
+fn bars([a, b]: &[f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
+    let residuals = [0.7 * a.cos() + 0.6 * b.cos() - 0.9, 0.7 * a.sin() + 0.6 * b.sin() - 0.2];
+    (residuals, [[-0.7 * a.sin(), -0.6 * b.sin()], [0.7 * a.cos(), 0.6 * b.cos()]])
+}
+
+fn curvature([a, b]: &[f64; 2], [s, r]: &[f64; 2]) -> [f64; 2] {
+    [-0.7 * a.cos() * s * s - 0.6 * b.cos() * r * r, -0.7 * a.sin() * s * s - 0.6 * b.sin() * r * r]
+}
+
+type Rows = fn(&[f64; 2]) -> ([f64; 2], [[f64; 2]; 2]);
+
+/// The root next to a point, by Newton's method.
+fn root(rows: Rows, mut x: [f64; 2]) -> [f64; 2] {
+    for _ in 0..12 {
+        let (residuals, jacobian) = rows(&x);
+        let step = NewtonStep.of::<Direct2<f64>>(&block(), &x, &jacobian, &residuals);
+        x = [x[0] - step[0], x[1] - step[1]];
+    }
+    x
+}
+
+/// Error that a step leaves of one of `error`, from the root that is next to `near`.
+fn left(rows: Rows, near: [f64; 2], error: f64, rule: &impl StepRule<f64, 2>) -> f64 {
+    let root = root(rows, near);
+    let x = [root[0] + 0.6 * error, root[1] - 0.8 * error];
+    let (residuals, jacobian) = rows(&x);
+    let step = rule.of::<Direct2<f64>>(&block(), &x, &jacobian, &residuals);
+    (x[0] - step[0] - root[0]).hypot(x[1] - step[1] - root[1])
+}
+
+#[test]
+fn errors_fall_with_the_order_of_the_step() {
+    let order = |left: &dyn Fn(f64) -> f64| (left(8e-3) / left(4e-3)).log2();
+    for (rows, near) in
+        [(circles::<f64> as Rows, [0.4, 0.6]), (circles::<f64> as Rows, [0.6, -0.4]), (bars, [1.0, -0.7])]
+    {
+        let newton = order(&|error| left(rows, near, error, &NewtonStep));
+        assert!((newton - 2.0).abs() < 0.15, "{newton}");
+    }
+    let chebyshev = order(&|error| left(bars, [1.0, -0.7], error, &ChebyshevStep(curvature)));
+    assert!((chebyshev - 3.0).abs() < 0.15, "{chebyshev}");
+    for near in [[0.4, 0.6], [0.6, -0.4]] {
+        let to_root = order(&|error| left(circles::<f64>, near, error, &RootStep(SECOND)));
+        assert!((to_root - 4.0).abs() < 0.15, "{to_root}");
+    }
+}
+
+#[test]
+fn dyads_close_in_two_evaluations_where_newtons_method_takes_three() {
+    // A hundred-thousandth of a link from the root, as predictions are.
+    for near in [[0.4, 0.6], [0.6, -0.4]] {
+        let end = root(circles::<f64>, near);
+        let start = [end[0] + 6e-6, end[1] - 8e-6];
+        let (mut straight, mut to_root) = (FastNewton::new(true), FastNewton::new(true));
+        let (x, _) = straight.solve::<2, Direct2<f64>>(&block(), start, circles);
+        let (y, _) = to_root.solve_round::<2, Direct2<f64>>(&block(), start, circles, &SECOND);
+        assert!(straight.closed && to_root.closed);
+        assert_eq!([straight.evaluations, to_root.evaluations], [3, 2]);
+        assert!((0..2).all(|k| (x[k] - y[k]).abs() < 1e-15), "{x:?} {y:?}");
+    }
+    let end = root(bars, [1.0, -0.7]);
+    let start = [end[0] + 6e-6, end[1] - 8e-6];
+    let (mut straight, mut curved) = (FastNewton::new(true), FastNewton::new(true));
+    let (x, _) = straight.solve::<2, Direct2<f64>>(&block(), start, bars);
+    let (y, _) = curved.solve_curved::<2, Direct2<f64>>(&block(), start, bars, curvature);
+    assert_eq!([straight.evaluations, curved.evaluations], [3, 2]);
+    assert!((0..2).all(|k| (x[k] - y[k]).abs() < 1e-14), "{x:?} {y:?}");
+}
+
+#[test]
+fn lanes_step_as_single_numbers_do() {
+    let starts = [[0.43, 0.57], [0.6, -0.4], [0.51, 0.49], [0.9, 0.9]];
+    let mut lanes = FastNewton::new(Lanes::<f64, 4>::mask(true));
+    let x = [0, 1].map(|k| Lanes(starts.map(|start| start[k])));
+    let second = SECOND.map(Lanes::constant);
+    let (x, _) = lanes.solve_round::<2, Direct2<Lanes<f64, 4>>>(&block(), x, circles, &second);
+    for (lane, start) in starts.into_iter().enumerate() {
+        let mut alone = FastNewton::new(true);
+        let (y, _) = alone.solve_round::<2, Direct2<f64>>(&block(), start, circles, &SECOND);
+        assert_eq!(y.map(f64::to_bits), x.map(|x| x.lane(lane).to_bits()), "{start:?}");
+        assert_eq!(f64::from(alone.evaluations), lanes.counts.lane(lane));
+    }
+}
+
+#[test]
+fn circles_that_do_not_meet_do_not_close() {
+    let apart = |x: &[f64; 2]| {
+        let (residuals, jacobian) = circles(x);
+        ([residuals[0] + 0.48, residuals[1]], jacobian)
+    };
+    let mut solver = FastNewton::new(true);
+    let _ = solver.solve_round::<2, Direct2<f64>>(&block(), [0.3, 0.1], apart, &SECOND);
+    assert!(!solver.closed);
+}
