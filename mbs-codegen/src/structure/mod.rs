@@ -20,7 +20,6 @@ use crate::model::Model;
 use crate::model::expression::{Id, Node as Written};
 use crate::symbolic::{Binary, Leaf, Node, NodeId, substitute::substitute};
 
-use curvature::Curvature;
 use dyad::Dyad;
 use matching::Matching;
 use pivots::Order;
@@ -53,7 +52,7 @@ impl Structure {
         for block in &mut self.blocks {
             roots.extend(block.explicit.as_mut().map(|explicit| &mut explicit.value));
             roots.extend(block.dyad.iter_mut().flat_map(Dyad::nodes_mut));
-            roots.extend(block.curvature.iter_mut().flat_map(Curvature::nodes_mut));
+            roots.extend(block.curvature.iter_mut().flatten().flatten());
         }
         roots
     }
@@ -72,8 +71,8 @@ pub struct Block {
     pub dyad: Option<Dyad>,
     /// The order in which four and more unknowns are eliminated.
     pub order: Option<Order>,
-    /// Second derivatives of its rows, where it is a dyad of two unknowns.
-    pub curvature: Option<Curvature>,
+    /// Second derivatives of its rows, where it is a dyad of circles and lines; see [`curvature`](curvature::curvature).
+    pub curvature: Option<Vec<Option<NodeId>>>,
 }
 
 /// A coordinate that its row gives explicitly.
@@ -149,7 +148,7 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
     diagnostics.is_empty().then_some(Structure { blocks, square, independent, matched: matching.of_row })
 }
 
-/// Gives dyads their curvature, where they are not too many.
+/// Gives dyads of circles and lines their curvature, where blocks are not too many.
 fn curve(equations: &mut Equations, blocks: &mut [Block]) {
     if blocks.iter().filter(|block| block.explicit.is_none()).count() > MOST_CURVED {
         return;

@@ -353,14 +353,14 @@ const _: () = {
             let __n33 = T::constant(0.25f64) * __n32;
             let __n37 = T::constant(0.25f64) * __n36;
             let __n40 = T::constant(0.2f64) * __n39;
-            let __n142 = __n36 * T::constant(0.9210609940028851f64);
-            let __n143 = __n32 * T::constant(0.3894183423086505f64);
-            let __n144 = __n142 + __n143;
-            let __n145 = __n32 * T::constant(0.9210609940028851f64);
-            let __n146 = __n36 * T::constant(0.3894183423086505f64);
-            let __n147 = __n145 - __n146;
-            let __n154 = T::constant(0.15f64) * __n147;
-            let __n157 = T::constant(0.15f64) * __n144;
+            let __n138 = __n36 * T::constant(0.9210609940028851f64);
+            let __n139 = __n32 * T::constant(0.3894183423086505f64);
+            let __n140 = __n138 + __n139;
+            let __n141 = __n32 * T::constant(0.9210609940028851f64);
+            let __n142 = __n36 * T::constant(0.3894183423086505f64);
+            let __n143 = __n141 - __n142;
+            let __n150 = T::constant(0.15f64) * __n143;
+            let __n153 = T::constant(0.15f64) * __n140;
             __Position([
                 __q[0],
                 __q[1],
@@ -378,8 +378,8 @@ const _: () = {
                 __n39,
                 __n40,
                 __t,
-                __n154,
-                __n157,
+                __n150,
+                __n153,
             ])
         }
         #[inline]
@@ -391,11 +391,11 @@ const _: () = {
             let __n41 = __n38 - __s.0[14];
             let __n43 = self.omega * __s.0[15];
             let __n44 = __s.0[2] - __n43;
-            let __n155 = __s.0[5] + __s.0[16];
-            let __n156 = __s.0[0] - __n155;
-            let __n158 = __s.0[6] + __s.0[17];
-            let __n159 = __s.0[1] - __n158;
-            [__n156, __n159, __n35, __n41, __n44]
+            let __n151 = __s.0[5] + __s.0[16];
+            let __n152 = __s.0[0] - __n151;
+            let __n154 = __s.0[6] + __s.0[17];
+            let __n155 = __s.0[1] - __n154;
+            [__n152, __n155, __n35, __n41, __n44]
         }
         #[inline]
         fn phi_q(
@@ -406,14 +406,14 @@ const _: () = {
             let __n50 = -__s.0[5];
             let __n57 = -__s.0[14];
             let __n58 = -__s.0[8];
-            let __n160 = -__s.0[16];
+            let __n156 = -__s.0[16];
             let mut __rows = [[T::constant(0.0f64); 5]; 5];
             __rows[0][0] = T::constant(1.0f64);
             __rows[0][2] = __s.0[6];
             __rows[0][3] = __s.0[17];
             __rows[1][1] = T::constant(1.0f64);
             __rows[1][2] = __n50;
-            __rows[1][3] = __n160;
+            __rows[1][3] = __n156;
             __rows[2][2] = __s.0[6];
             __rows[2][3] = __s.0[12];
             __rows[2][4] = __n57;
@@ -432,14 +432,14 @@ const _: () = {
             let __n50 = -__s.0[5];
             let __n57 = -__s.0[14];
             let __n58 = -__s.0[8];
-            let __n160 = -__s.0[16];
+            let __n156 = -__s.0[16];
             [
                 T::constant(1.0f64),
                 __s.0[6],
                 __s.0[17],
                 T::constant(1.0f64),
                 __n50,
-                __n160,
+                __n156,
                 __s.0[6],
                 __s.0[12],
                 __n57,
@@ -504,13 +504,13 @@ const _: () = {
             let __n120 = __s.0[14] * __n111;
             let __n124 = __n112 - __n114;
             let __n125 = __n118 - __n120;
-            let __n161 = __n102 * __s.0[16];
-            let __n162 = __n101 + __n161;
-            let __n163 = __n102 * __s.0[17];
-            let __n164 = __n105 + __n163;
-            let __n165 = -__n164;
-            let __n166 = -__n162;
-            [__n166, __n165, __n124, __n125, T::constant(0.0f64)]
+            let __n157 = __n102 * __s.0[16];
+            let __n158 = __n101 + __n157;
+            let __n159 = __n102 * __s.0[17];
+            let __n160 = __n105 + __n159;
+            let __n161 = -__n160;
+            let __n162 = -__n158;
+            [__n162, __n161, __n124, __n125, T::constant(0.0f64)]
         }
         #[inline]
         fn evaluate(
@@ -554,34 +554,34 @@ const _: () = {
             let __n120 = __n40 * __n111;
             let __n124 = __n112 - __n114;
             let __n125 = __n118 - __n120;
-            let __n142 = __n36 * T::constant(0.9210609940028851f64);
-            let __n143 = __n32 * T::constant(0.3894183423086505f64);
-            let __n144 = __n142 + __n143;
-            let __n145 = __n32 * T::constant(0.9210609940028851f64);
-            let __n146 = __n36 * T::constant(0.3894183423086505f64);
-            let __n147 = __n145 - __n146;
-            let __n154 = T::constant(0.15f64) * __n147;
-            let __n155 = __n17 + __n154;
-            let __n156 = __q[0] - __n155;
-            let __n157 = T::constant(0.15f64) * __n144;
-            let __n158 = __n24 + __n157;
-            let __n159 = __q[1] - __n158;
-            let __n160 = -__n154;
-            let __n161 = __n102 * __n154;
-            let __n162 = __n101 + __n161;
-            let __n163 = __n102 * __n157;
-            let __n164 = __n105 + __n163;
-            let __n165 = -__n164;
-            let __n166 = -__n162;
+            let __n138 = __n36 * T::constant(0.9210609940028851f64);
+            let __n139 = __n32 * T::constant(0.3894183423086505f64);
+            let __n140 = __n138 + __n139;
+            let __n141 = __n32 * T::constant(0.9210609940028851f64);
+            let __n142 = __n36 * T::constant(0.3894183423086505f64);
+            let __n143 = __n141 - __n142;
+            let __n150 = T::constant(0.15f64) * __n143;
+            let __n151 = __n17 + __n150;
+            let __n152 = __q[0] - __n151;
+            let __n153 = T::constant(0.15f64) * __n140;
+            let __n154 = __n24 + __n153;
+            let __n155 = __q[1] - __n154;
+            let __n156 = -__n150;
+            let __n157 = __n102 * __n150;
+            let __n158 = __n101 + __n157;
+            let __n159 = __n102 * __n153;
+            let __n160 = __n105 + __n159;
+            let __n161 = -__n160;
+            let __n162 = -__n158;
             ::mbs_runtime::Evaluation {
-                phi: [__n156, __n159, __n35, __n41, __n44],
+                phi: [__n152, __n155, __n35, __n41, __n44],
                 phi_q_entries: [
                     T::constant(1.0f64),
                     __n24,
-                    __n157,
+                    __n153,
                     T::constant(1.0f64),
                     __n50,
-                    __n160,
+                    __n156,
                     __n24,
                     __n37,
                     __n57,
@@ -597,15 +597,15 @@ const _: () = {
                     T::constant(0.0f64),
                     __p.0[0],
                 ],
-                gamma: [__n166, __n165, __n124, __n125, T::constant(0.0f64)],
+                gamma: [__n162, __n161, __n124, __n125, T::constant(0.0f64)],
             }
         }
         #[inline]
         fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 1usize] {
-            let __n148 = __s.0[9] * __s.0[13];
-            let __n149 = __s.0[7] * __s.0[11];
-            let __n150 = __n148 - __n149;
-            [__n150]
+            let __n144 = __s.0[9] * __s.0[13];
+            let __n145 = __s.0[7] * __s.0[11];
+            let __n146 = __n144 - __n145;
+            [__n146]
         }
         #[inline]
         fn limits(
@@ -805,78 +805,51 @@ const _: () = {
                 row_scales: [T::constant(0.3f64), T::constant(0.3f64)],
                 coordinate_scales: [T::constant(1.0f64), T::constant(1.0f64)],
             };
-            let (__x, __block) = if const { __S::SECOND_ORDER } {
-                __solver
-                    .solve_curved::<
-                        2,
-                        ::mbs_runtime::Direct2<T>,
-                    >(
-                        &__described,
-                        [__q[3], __q[4]],
-                        #[inline(always)]
-                        |__x| __evaluate(__x),
-                        #[inline(always)]
-                        |__x, __step| {
-                            let (_, [_, __n30, _, __n33, _, __n37, _, __n40]) = __kept
-                                .get();
-                            let __n102 = __step[0] * __step[0];
-                            let __n111 = __step[1] * __step[1];
-                            let __n112 = __n30 * __n111;
-                            let __n113 = __n33 * __n102;
-                            let __n116 = __n37 * __n102;
-                            let __n120 = __n40 * __n111;
-                            let __n138 = __n113 - __n112;
-                            let __n139 = __n120 - __n116;
-                            [__n138, __n139]
-                        },
-                    )
-            } else {
-                __solver
-                    .solve_closed::<
-                        2,
-                        ::mbs_runtime::Direct2<T>,
-                    >(
-                        &__described,
-                        [__q[3], __q[4]],
-                        #[inline(always)]
-                        |__x| {
-                            if __S::INLINED_PER_BLOCK {
-                                __evaluate(__x)
-                            } else {
-                                ::mbs_runtime::__private::call_never_inlined(
-                                    &mut __evaluate,
-                                    __x,
-                                )
-                            }
-                        },
-                        |__x| {
-                            let ([__n36, __n39], [__n32, __n29]) = T::sin_cos([
-                                __x[0],
-                                __x[1],
-                            ]);
-                            let __n148 = __n32 * __n39;
-                            let __n149 = __n29 * __n36;
-                            let __n150 = __n148 - __n149;
-                            T::less(T::constant(0.0f64), __n150)
-                        },
-                        |__near| {
-                            let __n132 = T::constant(0.3f64) - __n17;
-                            ::mbs_runtime::Dyad::Bars {
-                                a: [
-                                    [T::constant(0.2f64), T::constant(0.0f64)],
-                                    [T::constant(0.0f64), T::constant(-0.2f64)],
-                                ],
-                                b: [
-                                    [T::constant(-0.25f64), T::constant(0.0f64)],
-                                    [T::constant(0.0f64), T::constant(0.25f64)],
-                                ],
-                                c: [__n132, __n24],
-                                unknowns: [[0.0, 1.0], [1.0, 0.0]],
-                            }
-                                .roots(__near)
-                        },
-                    )
-            };
+            let (__x, __block) = __solver
+                .solve_closed::<
+                    2,
+                    ::mbs_runtime::Direct2<T>,
+                >(
+                    &__described,
+                    [__q[3], __q[4]],
+                    #[inline(always)]
+                    |__x| {
+                        if __S::INLINED_PER_BLOCK {
+                            __evaluate(__x)
+                        } else {
+                            ::mbs_runtime::__private::call_never_inlined(
+                                &mut __evaluate,
+                                __x,
+                            )
+                        }
+                    },
+                    |__x| {
+                        let ([__n36, __n39], [__n32, __n29]) = T::sin_cos([
+                            __x[0],
+                            __x[1],
+                        ]);
+                        let __n144 = __n32 * __n39;
+                        let __n145 = __n29 * __n36;
+                        let __n146 = __n144 - __n145;
+                        T::less(T::constant(0.0f64), __n146)
+                    },
+                    |__near| {
+                        let __n132 = T::constant(0.3f64) - __n17;
+                        ::mbs_runtime::Dyad::Bars {
+                            a: [
+                                [T::constant(0.2f64), T::constant(0.0f64)],
+                                [T::constant(0.0f64), T::constant(-0.2f64)],
+                            ],
+                            b: [
+                                [T::constant(-0.25f64), T::constant(0.0f64)],
+                                [T::constant(0.0f64), T::constant(0.25f64)],
+                            ],
+                            c: [__n132, __n24],
+                            unknowns: [[0.0, 1.0], [1.0, 0.0]],
+                        }
+                            .roots(__near)
+                    },
+                );
             let mut __values = __kept.get();
             if !__S::INLINED_PER_BLOCK
                 && !::mbs_runtime::__private::is_same(&__values.0, &__x)
@@ -890,18 +863,18 @@ const _: () = {
             let __outcome = ::mbs_runtime::__private::first_failure::<
                 T,
             >(__outcome, __block);
-            let __n145 = __n32 * T::constant(0.9210609940028851f64);
-            let __n146 = __n36 * T::constant(0.3894183423086505f64);
-            let __n147 = __n145 - __n146;
-            let __n154 = T::constant(0.15f64) * __n147;
-            let __n155 = __n17 + __n154;
-            __q[0] = __n155;
-            let __n142 = __n36 * T::constant(0.9210609940028851f64);
-            let __n143 = __n32 * T::constant(0.3894183423086505f64);
-            let __n144 = __n142 + __n143;
-            let __n157 = T::constant(0.15f64) * __n144;
-            let __n158 = __n24 + __n157;
-            __q[1] = __n158;
+            let __n141 = __n32 * T::constant(0.9210609940028851f64);
+            let __n142 = __n36 * T::constant(0.3894183423086505f64);
+            let __n143 = __n141 - __n142;
+            let __n150 = T::constant(0.15f64) * __n143;
+            let __n151 = __n17 + __n150;
+            __q[0] = __n151;
+            let __n138 = __n36 * T::constant(0.9210609940028851f64);
+            let __n139 = __n32 * T::constant(0.3894183423086505f64);
+            let __n140 = __n138 + __n139;
+            let __n153 = T::constant(0.15f64) * __n140;
+            let __n154 = __n24 + __n153;
+            __q[1] = __n154;
             (
                 __outcome,
                 __Position([
@@ -921,8 +894,8 @@ const _: () = {
                     __n39,
                     __n40,
                     __t,
-                    __n154,
-                    __n157,
+                    __n150,
+                    __n153,
                 ]),
             )
         }
@@ -935,7 +908,7 @@ const _: () = {
             let __n50 = -__s.0[5];
             let __n57 = -__s.0[14];
             let __n58 = -__s.0[8];
-            let __n160 = -__s.0[16];
+            let __n156 = -__s.0[16];
             let __margin = ::mbs_runtime::Margin::<T>::regular();
             let (__block1, __value) = <::mbs_runtime::Direct2<
                 T,
@@ -944,7 +917,7 @@ const _: () = {
                 2,
             >>::factorize(
                 &[[__s.0[12], __n57], [__s.0[10], __n58]],
-                &[T::constant(0.3f64), T::constant(0.3f64)],
+                &[T::constant(1.0f64), T::constant(1.0f64)],
                 &[T::constant(1.0f64), T::constant(1.0f64)],
             );
             let __margin = __margin
@@ -956,7 +929,7 @@ const _: () = {
                 );
             (
                 __Factors {
-                    entries: [__s.0[5], __s.0[6], __n50, __s.0[17], __n160],
+                    entries: [__s.0[5], __s.0[6], __n50, __s.0[17], __n156],
                     block1: __block1,
                 },
                 __margin,

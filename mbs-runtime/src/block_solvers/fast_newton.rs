@@ -1,7 +1,7 @@
-//! Newton's and Chebyshev's method without safeguards, for steps close to a regular position; the caller checks the result.
+//! Newton's method without safeguards, of dyads with second derivatives, for steps close to a regular position; the caller checks the result.
 
 use crate::block_solvers::convergence::{own_rounding, required, rounding_shows};
-use crate::block_solvers::step_rules::{ChebyshevStep, NewtonStep, RootStep, StepRule};
+use crate::block_solvers::step_rules::{NewtonStep, RootStep, StepRule};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::{select, weights as reciprocals};
@@ -172,17 +172,6 @@ impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
         evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
         self.solve_by::<K, F, _>(block, x, evaluate, NewtonStep)
-    }
-
-    #[inline(always)]
-    fn solve_curved<const K: usize, F: Factorization<T, K>>(
-        &mut self,
-        block: &Block<T, K>,
-        x: [T; K],
-        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-        curvature: impl Fn(&[T; K], &[T; K]) -> [T; K],
-    ) -> ([T; K], T::Lanes<Outcome>) {
-        self.solve_by::<K, F, _>(block, x, evaluate, ChebyshevStep(curvature))
     }
 
     #[inline(always)]

@@ -27,16 +27,6 @@ fn circles<T: Scalar>([x, y]: &[T; 2]) -> ([T; 2], [[T; 2]; 2]) {
 /// Second derivatives of both circles.
 const SECOND: [f64; 2] = [2.0, -6.0];
 
-/// Two bars of 0.7 and 0.6 between 0 and (0.9, 0.2), by their angles.
-fn bars([a, b]: &[f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
-    let residuals = [0.7 * a.cos() + 0.6 * b.cos() - 0.9, 0.7 * a.sin() + 0.6 * b.sin() - 0.2];
-    (residuals, [[-0.7 * a.sin(), -0.6 * b.sin()], [0.7 * a.cos(), 0.6 * b.cos()]])
-}
-
-fn curvature([a, b]: &[f64; 2], [s, r]: &[f64; 2]) -> [f64; 2] {
-    [-0.7 * a.cos() * s * s - 0.6 * b.cos() * r * r, -0.7 * a.sin() * s * s - 0.6 * b.sin() * r * r]
-}
-
 type Rows = fn(&[f64; 2]) -> ([f64; 2], [[f64; 2]; 2]);
 
 /// The root next to a point, by Newton's method.
@@ -61,16 +51,10 @@ fn left(rows: Rows, near: [f64; 2], error: f64, rule: &impl StepRule<f64, 2>) ->
 #[test]
 fn errors_fall_with_the_order_of_the_step() {
     let order = |left: &dyn Fn(f64) -> f64| (left(8e-3) / left(4e-3)).log2();
-    for (rows, near) in
-        [(circles::<f64> as Rows, [0.4, 0.6]), (circles::<f64> as Rows, [0.6, -0.4]), (bars, [1.0, -0.7])]
-    {
-        let newton = order(&|error| left(rows, near, error, &NewtonStep));
-        assert!((newton - 2.0).abs() < 0.15, "{newton}");
-    }
-    let chebyshev = order(&|error| left(bars, [1.0, -0.7], error, &ChebyshevStep(curvature)));
-    assert!((chebyshev - 3.0).abs() < 0.15, "{chebyshev}");
     for near in [[0.4, 0.6], [0.6, -0.4]] {
-        let to_root = order(&|error| left(circles::<f64>, near, error, &RootStep(SECOND)));
+        let newton = order(&|error| left(circles, near, error, &NewtonStep));
+        assert!((newton - 2.0).abs() < 0.15, "{newton}");
+        let to_root = order(&|error| left(circles, near, error, &RootStep(SECOND)));
         assert!((to_root - 4.0).abs() < 0.15, "{to_root}");
     }
 }
@@ -88,13 +72,6 @@ fn dyads_close_in_two_evaluations_where_newtons_method_takes_three() {
         assert_eq!([straight.evaluations, to_root.evaluations], [3, 2]);
         assert!((0..2).all(|k| (x[k] - y[k]).abs() < 1e-15), "{x:?} {y:?}");
     }
-    let end = root(bars, [1.0, -0.7]);
-    let start = [end[0] + 6e-6, end[1] - 8e-6];
-    let (mut straight, mut curved) = (FastNewton::new(true), FastNewton::new(true));
-    let (x, _) = straight.solve::<2, Direct2<f64>>(&block(), start, bars);
-    let (y, _) = curved.solve_curved::<2, Direct2<f64>>(&block(), start, bars, curvature);
-    assert_eq!([straight.evaluations, curved.evaluations], [3, 2]);
-    assert!((0..2).all(|k| (x[k] - y[k]).abs() < 1e-14), "{x:?} {y:?}");
 }
 
 #[test]

@@ -82,7 +82,7 @@ fn in_metric<T: Scalar, const M: usize, const K: usize>(
     for (row, row_scale) in scaled.iter_mut().zip(row_scales) {
         let weight = T::constant(1.0) / *row_scale;
         for (entry, scale) in row.iter_mut().zip(coordinate_scales) {
-            *entry = *entry * (*scale * weight);
+            *entry = *entry * *scale * weight;
         }
     }
     scaled

@@ -1,6 +1,5 @@
 //! The block-triangular solution of positions.
 
-use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use crate::emit::rust::code::{lets, list};
@@ -8,8 +7,7 @@ use crate::emit::rust::elimination::Eliminations;
 use crate::emit::rust::scope::{Scope, local, number};
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::program::{BlockMethod, BlockProgram, Program, Section, System};
-use crate::structure::curvature::Curvature;
+use crate::program::{BlockMethod, BlockProgram, Program, System};
 use crate::structure::dyad::Dyad;
 use crate::symbolic::NodeId;
 
@@ -92,13 +90,15 @@ fn newton(
         (None, false) => format!("solve_branched::<{size}, {factors}>"),
     };
     let _ = write!(text, "let __described = {description};\nlet (__x, __block) = ");
-    if let Some((curvature, section)) = curvature {
+    if let Some((second, section)) = curvature {
         *text += "if const { __S::SECOND_ORDER } {\n";
-        let given = format!(
-            "::<{size}, {factors}>(&__described, {starts}, #[inline(always)] |__x| __evaluate(__x), "
+        lets(section, scope, text);
+        let second = list(second.iter().map(|id| scope.or_zero(*id)));
+        let _ = writeln!(
+            text,
+            "__solver.solve_round::<{size}, {factors}>(&__described, {starts}, \
+             #[inline(always)] |__x| __evaluate(__x), &{second})\n}} else {{"
         );
-        curved((curvature, section), kept, (&inner, &given), text);
-        *text += "} else {\n";
     }
     let call = format!("__solver.{method}");
     let rows = list(block.rows.iter().map(usize::to_string));
@@ -129,31 +129,6 @@ fn newton(
         let _ = writeln!(text, "__q[{coordinate}] = __x[{index}];");
     }
     *text += "let __outcome = __mbs::__private::first_failure::<T>(__outcome, __block);\n";
-}
-
-/// Solution of a dyad with the second derivatives of its rows; `given`: what it is called with besides.
-fn curved(
-    (curvature, section): (&Curvature, &Section),
-    kept: &[NodeId],
-    (inner, given): (&Scope<'_>, &str),
-    text: &mut String,
-) {
-    let nodes = curvature.nodes();
-    let values = list(nodes.iter().map(|id| inner.or_zero(*id)));
-    if let Curvature::Round(_) = curvature {
-        lets(section, inner, text);
-        let _ = writeln!(text, "__solver.solve_round{given}&{values})");
-        return;
-    }
-    let _ = writeln!(text, "__solver.solve_curved{given}#[inline(always)] |__x, __step| {{");
-    let mut used: BTreeSet<NodeId> = nodes.into_iter().flatten().collect();
-    used.extend(section.lines.iter().flat_map(|line| line.operands(inner.graph)));
-    if kept.iter().any(|id| used.contains(id)) {
-        let name = |id: &NodeId| if used.contains(id) { local(*id) } else { "_".into() };
-        let _ = writeln!(text, "let (_, {}) = __kept.get();", list(kept.iter().map(name)));
-    }
-    lets(section, inner, text);
-    let _ = writeln!(text, "{values}\n}})");
 }
 
 /// Both positions of `Dyad::… { … }` or `Single::… { … }` with its coefficients, which are written in the order of the text.

@@ -23,7 +23,7 @@ pub struct Scope<'a> {
     pub parameters: Option<&'a BTreeMap<NodeId, usize>>,
     /// Fields of the position stage, `__s`.
     pub position: Option<&'a BTreeMap<NodeId, usize>>,
-    /// Coordinates of the block that is being solved, `__x`; their velocities are a step of its iteration, `__step`.
+    /// Coordinates of the block that is being solved, `__x`.
     pub unknowns: &'a [usize],
     /// Bounds at which code is cut.
     pub lengths: Lengths,
@@ -113,12 +113,7 @@ impl Scope<'_> {
                     None => format!("__q[{index}]"),
                 }
             }
-            Node::Leaf(Leaf::Velocity(index)) => {
-                match self.unknowns.iter().position(|i| *i == index as usize) {
-                    Some(unknown) => format!("__step[{unknown}]"),
-                    None => format!("__qd[{index}]"),
-                }
-            }
+            Node::Leaf(Leaf::Velocity(index)) => format!("__qd[{index}]"),
             Node::Leaf(Leaf::Acceleration(index)) => format!("__qdd[{index}]"),
             Node::Leaf(Leaf::State(index)) => format!("__z[{index}]"),
             Node::Leaf(Leaf::Multiplier(index)) => format!("__lambda[{index}]"),
