@@ -29,6 +29,8 @@ pub fn is_dynamic(statement: &Statement) -> bool {
             | StatementKind::Energy { .. }
             | StatementKind::State { .. }
             | StatementKind::Rate { .. }
+            | StatementKind::Event { .. }
+            | StatementKind::Latch { .. }
     )
 }
 

@@ -79,6 +79,7 @@ pub(crate) mod model;
 pub(crate) mod simulation;
 
 pub use crate::mechanism::enclosure::WithIntervals;
+pub use crate::mechanism::event::{Condition, Event};
 pub use crate::mechanism::normal_forces::{NormalForces, Term, WithNormalForces};
 pub use crate::mechanism::set_valued::{Grip, SetValuedRow, WithSetValuedRows};
 pub use crate::mechanism::transformed::Transformed;

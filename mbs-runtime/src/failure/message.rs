@@ -259,6 +259,12 @@ impl fmt::Display for Failure {
                  `DormandPrince8`, or a smooth law: `speed` in place of `sticks`, a contact with `stiffness`",
                 friction.name, friction.line
             ),
+            FailureKind::EventOfMotion { event } => write!(
+                f,
+                "event `{}` (line {}) sets values that are known in a motion by an explicit method alone: take one, as `DormandPrince8`, or a \
+                 scene without the event",
+                event.name, event.line
+            ),
             FailureKind::StickingUndecided { friction } => write!(
                 f,
                 "`{}` (line {}) is undecided at t = {time} s: with the forces there a friction can neither stick nor slide, a contact neither \
@@ -280,8 +286,9 @@ impl fmt::Display for Failure {
             ),
             FailureKind::Chatter { friction, parts } => write!(
                 f,
-                "`{}` (line {}), or another one, changes between sticking and sliding, or closed and open, more than {parts} times within \
-                 the step from t = {time} s: take shorter steps",
+                "`{}` (line {}), or another one, changes between sticking and sliding, closed and open, or begun and ended, more than {parts} \
+                 times within the step from t = {time} s: take shorter steps; give an event another end, `until`, where what it switches \
+                 leads back to its condition",
                 friction.name, friction.line
             ),
             FailureKind::MechanismMismatch { mechanism } => {
@@ -353,6 +360,7 @@ mod tests {
             FailureKind::Ambiguous { row: ROW, solutions: 1, all: false }.at(time),
             FailureKind::SharedNormalForce { row: ROW }.at(time),
             FailureKind::Stiction { friction: ROW }.without_time(),
+            FailureKind::EventOfMotion { event: ROW }.without_time(),
             FailureKind::StickingUndecided { friction: ROW }.at(time),
             FailureKind::Penetration { contact: ROW, gap: -1e-3 }.at(time),
             FailureKind::ImpactUndecided { contact: ROW }.at(time),

@@ -205,6 +205,11 @@ pub enum FailureKind {
         /// The friction or contact.
         friction: &'static Entry,
     },
+    /// Values that an event sets are known within a motion by an explicit method alone.
+    EventOfMotion {
+        /// The first event of the text.
+        event: &'static Entry,
+    },
     /// No way of sticking and sliding is consistent with the forces at this time, or frictions along lengths that follow from each other
     /// share a force in a ratio that is not known.
     StickingUndecided {
@@ -224,11 +229,12 @@ pub enum FailureKind {
         /// A contact that closes.
         contact: &'static Entry,
     },
-    /// Frictions stick and slide, or contacts close and open, more often within one step than a step is divided.
+    /// Frictions stick and slide, contacts close and open, or events begin and end, more often within one step than a step is divided, or
+    /// without end at one instant.
     Chatter {
-        /// The first friction with stiction or rigid contact.
+        /// The first friction with stiction, rigid contact or event.
         friction: &'static Entry,
-        /// Parts that the step was divided into.
+        /// Parts that the step was divided into, or changes next to each other.
         parts: u32,
     },
     /// A step that is 0, negative, no number, or too small to change the time.
@@ -403,6 +409,7 @@ impl FailureKind {
             | FailureKind::StatesUnknown { .. }
             | FailureKind::NotSmooth { .. }
             | FailureKind::Stiction { .. }
+            | FailureKind::EventOfMotion { .. }
             | FailureKind::Penetration { .. }
             | FailureKind::MechanismMismatch { .. } => FailureSource::Input,
             FailureKind::NotConverged { .. }

@@ -57,6 +57,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     quiet: R,
     /// `true` if steps end where contacts close or open.
     locates: bool,
+    /// Last time (s) at which events changed, and how often they did so next to each other.
+    pub(super) changed: (R, u32),
     /// Energy (J) that impacts have brought in: none, or less.
     pub(crate) gained: R,
     pub(crate) counts: Counts,
@@ -72,8 +74,8 @@ where
     F: Formulation<S, R, N, M>,
     R: Real,
 {
-    /// `true` if a text has contacts, or frictions with stiction.
-    const MAY_CHANGE: bool = !(S::CONTACTS.is_empty() && S::SET_VALUED.is_empty());
+    /// `true` if a text has contacts, frictions with stiction, or events.
+    const MAY_CHANGE: bool = !S::CONTACTS.is_empty() || S::HAS_MODES;
 
     /// Those of a motion that continues `from`.
     pub(crate) fn new(
@@ -103,6 +105,7 @@ where
             parameters: Self::MAY_CHANGE.then_some(*model.parameters),
             quiet: start,
             locates: true,
+            changed: (start, 0),
             gained: R::constant(0.0),
             counts,
         }
@@ -409,8 +412,9 @@ where
             self.quiet = open.until;
             changes = open.changes;
         }
-        if const { !S::SET_VALUED.is_empty() } {
+        if const { S::HAS_MODES } {
             changes |= self.strike(t, y)?;
+            changes |= self.switch(t, y, changes)?;
             changes |= self.decide(t, y, changes)?;
         }
         Ok(changes)
@@ -419,7 +423,7 @@ where
     #[inline(always)]
     fn may_kink(&mut self, to: R) -> bool {
         let is_quiet = S::CONTACTS.is_empty() || to <= self.quiet || !self.locates;
-        Self::MAY_KINK && (!S::SET_VALUED.is_empty() || !is_quiet)
+        Self::MAY_KINK && (S::HAS_MODES || !is_quiet)
     }
 
     fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
@@ -429,6 +433,10 @@ where
             let evaluated = S::evaluated(self.parameters.as_ref().unwrap_or(self.model.parameters));
             let at = |t| step.at(t).y;
             first = self.model.contact_change((self.start, evaluated), (start, end), at, &self.scrutiny)?;
+            end = first.unwrap_or(end);
+        }
+        if const { !S::EVENTS.is_empty() } && !self.model.first_order {
+            first = self.event(step, (start, end))?.or(first);
             end = first.unwrap_or(end);
         }
         if const { !S::SET_VALUED.is_empty() } && !self.model.first_order {

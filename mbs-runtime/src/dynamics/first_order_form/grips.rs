@@ -48,7 +48,7 @@ where
     /// parts of a step of fixed size keep its modes.
     #[inline(never)]
     pub(super) fn decide(&mut self, t: R, y: &Moving<S, R, N, M>, anew: bool) -> Result<bool, Failure> {
-        if self.model.first_order {
+        if const { S::SET_VALUED.is_empty() } || self.model.first_order {
             return Ok(false);
         }
         let rate = if anew { Some(self.solve(t, y)?) } else { None };

@@ -1,5 +1,6 @@
 //! Model of a mechanism for the methods: with its stage-0 values and its metric.
 
+pub(crate) mod events;
 pub(crate) mod forward;
 pub(crate) mod instant;
 pub(crate) mod method;

@@ -54,9 +54,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         S::grips(self.parameters).iter().any(sticks)
     }
 
-    /// Parameters with the same grips as here.
+    /// Parameters with the same grips and values of events as here.
     #[inline(always)]
     pub(crate) fn gripping(&self, mut parameters: S::Parameters) -> S::Parameters {
+        let values = S::remembered_mut(&mut parameters).iter_mut();
+        values.zip(S::remembered(self.parameters)).for_each(|(to, from)| *to = *from);
         for (to, from) in S::grips_mut(&mut parameters).iter_mut().zip(S::grips(self.parameters)) {
             *to = *from;
         }
