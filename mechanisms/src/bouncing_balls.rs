@@ -35,6 +35,7 @@ mechanism! {
     coord p: [m; 3, 2] = [[-0.3, 0.9], [0.1, 1.2], [0.35, 0.7]];
     for i in 0..3 {
         body ball { mass: m[i], com: p[i] }
+        out centre: [m; 2] = p[i];
         out rim: [m; 2] = p[i] + R*[0, 1];
     }
     out corner: [m; 4, 2] = [[-W, 1.2m], [-W, 0m], [W, 0m], [W, 1.2m]];
@@ -59,9 +60,9 @@ mechanism! {
     preset dull "e = 0.5" { e: 0.5 }
     span 3s;
     draw link box: corner[0], corner[1], corner[2], corner[3];
-    draw wheel p[0] rim rim[0];
-    draw wheel p[1] rim rim[1];
-    draw wheel p[2] rim rim[2];
+    draw wheel centre[0] rim rim[0];
+    draw wheel centre[1] rim rim[1];
+    draw wheel centre[2] rim rim[2];
 }
 
 #[cfg(test)]
