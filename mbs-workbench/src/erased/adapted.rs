@@ -256,6 +256,7 @@ where
     const CONTACTS: &'static [Entry] = S::CONTACTS;
     const SET_VALUED: &'static [Entry] = S::SET_VALUED;
     const HAS_RIGID_CONTACTS: bool = S::HAS_RIGID_CONTACTS;
+    const HAS_FRICTION_ON_CONTACTS: bool = S::HAS_FRICTION_ON_CONTACTS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     fn gaps(

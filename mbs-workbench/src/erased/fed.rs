@@ -206,6 +206,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     const CONTACTS: &'static [Entry] = S::CONTACTS;
     const SET_VALUED: &'static [Entry] = S::SET_VALUED;
     const HAS_RIGID_CONTACTS: bool = S::HAS_RIGID_CONTACTS;
+    const HAS_FRICTION_ON_CONTACTS: bool = S::HAS_FRICTION_ON_CONTACTS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     // `enclosed` stays `None`: intervals know an input by its value and its rates at the start of a step.

@@ -1,0 +1,8 @@
+//! Friction on rigid contacts: sticking, sliding, impacts and paradoxes, against closed forms.
+#![forbid(unsafe_code)]
+
+mod blocks;
+mod cradle;
+mod disk;
+mod random;
+mod rod;
