@@ -6,3 +6,4 @@ mod cradle;
 mod disk;
 mod random;
 mod rod;
+mod woodpecker;
