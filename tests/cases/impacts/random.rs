@@ -122,9 +122,12 @@ fn no_impact_brings_in_energy() {
                 }
             };
             let (before, after) = (energy(&masses, &masses.v), energy(&masses, run.qd()));
-            assert!(after <= before * (1.0 + 1e-12), "{seed}: {before} {after}");
             struck += u64::from(after != before);
             let [p1, t1, p2, t2] = impulses(&masses, run.qd());
+            // A thousand roundings of the works, which are large where rows nearly follow from each other.
+            let parts = [(&masses.n1, p1), (&masses.s1, t1), (&masses.n2, p2), (&masses.s2, t2)];
+            let works: f64 = parts.iter().map(|(row, p)| (p * along(row, &masses.v)).abs()).sum();
+            assert!(after <= before + 2e-13 * (before + works), "{seed}: {before} {after} {works}");
             let size = p1.abs() + p2.abs() + t1.abs() + t2.abs();
             let pairs = [
                 ((&masses.n1, &masses.s1), (p1, t1), (masses.mu1, masses.e1)),
@@ -132,7 +135,8 @@ fn no_impact_brings_in_energy() {
             ];
             // Where both close there is one impact; without a loss its restitution was lowered.
             let once = pairs.iter().all(|((n, _), _, _)| along(n, &masses.v) < 0.0);
-            let lost = after < before * (1.0 - 1e-10);
+            let rounding = 1e-9 * (1.0 + works);
+            let lost = after < before - rounding;
             for ((n, s), (p, t), (mu, e)) in pairs {
                 let [gap, slip] = [n, s].map(|row| along(row, run.qd()));
                 let place = format!("{seed}: {gap} {slip} {p} {t} of {mu}");
@@ -142,8 +146,8 @@ fn no_impact_brings_in_energy() {
                     let approach = along(n, &masses.v);
                     let slides = slip.abs() > 1e-9;
                     assert!(!slides || (t + slip.signum() * mu * p).abs() < 1e-8 * size, "{place}");
-                    assert!(gap >= -e * approach - 1e-9 || !lost, "{place}");
-                    assert!(p < 1e-8 * size || (gap + e * approach).abs() < 1e-9 || !lost, "{place}");
+                    assert!(gap >= -e * approach - rounding || !lost, "{place}");
+                    assert!(p < 1e-8 * size || (gap + e * approach).abs() < rounding || !lost, "{place}");
                     lowered += u32::from(!lost);
                 }
                 slides += u32::from(slip.abs() > 1e-9 && p > 1e-6 * size);

@@ -1,7 +1,7 @@
 //! Painlevé's rod: a rod that slides on its tip over a rough floor.
 
-use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, RungeKutta4, Simulation};
-use mbs_runtime::{FailureKind, mechanism};
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, Method, Projection, RungeKutta4, Simulation};
+use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
     /// A homogeneous rod of 1 m, 2 kg on its lower end.
@@ -58,39 +58,56 @@ fn where_no_force_or_several_are_consistent_it_is_refused() {
     }
 }
 
-/// Dropped, it strikes and stops sliding, for the impulse is no paradox; thereafter it falls or goes on as the law says.
+/// The end of a run of 0.3 s; its gap is closed or open all the way.
+fn ends<X: Method<Rod<f64>, f64, 3, 0>>(
+    rod: Rod<f64>,
+    method: X,
+    go: impl Fn(&mut Simulation<Rod<f64>, X, f64, 3, 0>, f64) -> Result<(), Failure>,
+) -> Option<Failure> {
+    let mut run = match Simulation::start_from_text(rod, method, 0.0_f64) {
+        Ok(run) => run,
+        Err(failure) => return Some(failure),
+    };
+    let (mut ended, mut last) = (None, f64::MAX);
+    for part in 1..=30 {
+        let t = 0.01 * f64::from(part);
+        ended = go(&mut run, t).err();
+        let energy = run.balance().energy;
+        let energy = energy.kinetic + energy.potential;
+        assert!(run.q()[1] > -1e-12 && energy < last + 1e-9, "{rod:?}: {energy} {last} {:?}", run.instant());
+        last = energy;
+        if ended.is_some() {
+            break;
+        }
+    }
+    ended
+}
+
 #[test]
-fn what_runs_into_the_paradox_ends_there_with_a_closed_gap() {
-    let mut refused = 0;
-    for index in 0..24 {
-        let angle = 0.2 + 0.1 * f64::from(index);
-        let rod = Rod { mu: 1.8, angle, v0: -4.0, turn: 0.0 };
-        for fixed in [false, true] {
-            let ended = if fixed {
-                let method = Explicit::new(RungeKutta4, Projection::default());
-                Simulation::start_from_text(rod, method, 0.0_f64).and_then(|mut run| {
-                    let end = run.step_to(0.3, 300);
-                    assert!(run.q()[1] > -1e-12, "{angle}: {:?}", run.instant());
-                    end
-                })
-            } else {
-                let method = Explicit::new(DormandPrince8, Projection::default());
-                Simulation::start_from_text(rod, method, 0.0_f64).and_then(|mut run| {
-                    let end = run.advance_to(0.3);
-                    assert!(run.q()[1] > -1e-12, "{angle}: {:?}", run.instant());
-                    end
-                })
-            };
-            if let Err(failure) = ended {
+fn rods_near_the_paradox_keep_their_gap_or_are_refused() {
+    let (mut refused, mut went_on) = (0, 0);
+    for turn in [-6.0, -2.0, 0.0, 2.0, 6.0] {
+        for index in 0..24 {
+            let rod = Rod { mu: 1.8, angle: 0.2 + 0.1 * f64::from(index), v0: -4.0, turn };
+            let adaptive =
+                ends(rod, Explicit::new(DormandPrince8, Projection::default()), |run, t| run.advance_to(t));
+            let fixed =
+                ends(rod, Explicit::new(RungeKutta4, Projection::default()), |run, t| run.step_to(t, 20));
+            for (failure, is_fixed) in [(adaptive, false), (fixed, true)] {
+                let Some(failure) = failure else {
+                    went_on += 1;
+                    continue;
+                };
                 refused += 1;
-                let named = match failure.kind {
+                // A fixed step is too long for a force that grows without bound towards the paradox.
+                let typed = match failure.kind {
                     FailureKind::ContactUndecided { contact, .. } => contact.name == "floor",
-                    FailureKind::StepTooSmall { .. } => true,
+                    FailureKind::Chatter { .. } => is_fixed,
                     _ => false,
                 };
-                assert!(named, "{angle}: {failure}");
+                assert!(typed, "{rod:?}: {failure}");
             }
         }
     }
-    assert!((4..40).contains(&refused), "{refused}");
+    assert!(refused > 20 && went_on > 100, "{refused} {went_on}");
 }
