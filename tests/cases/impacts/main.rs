@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod blocks;
+mod coordinates;
 mod cradle;
 mod disk;
 mod random;
