@@ -165,7 +165,9 @@ where
                 let none = no_rate(row, &next.qd, model.metric);
                 // The last one takes contacts along that separate: it is the shortest change to speeds that open or keep all gaps.
                 let restitution = row.restitution.filter(|_| impact < most).unwrap_or(zero);
-                *part = *part && (impact == most || row.rate <= none);
+                // What was closed has no rate but rounding.
+                let closed = impact == 0 && S::grips(model.parameters).get(index).is_some_and(sticks);
+                *part = *part && (impact == most || row.rate <= none || closed);
                 *b = row.rate + restitution * row.rate.min(zero);
                 if *part && row.rate < -none && approaching.is_none() {
                     approaching = Some(index);
