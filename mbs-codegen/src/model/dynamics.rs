@@ -172,10 +172,14 @@ pub enum SetValued {
         /// Largest force.
         limit: Id,
     },
+    /// Up to a multiple of the force of a rigid contact.
+    FrictionOnContact(OnContact),
     /// Any force that pushes, with impacts of a coefficient of restitution.
     Contact {
         /// Coefficient of restitution.
         restitution: Id,
+        /// `true` if its impacts are its own, one after the other with those of others.
+        ordered: bool,
     },
 }
 
@@ -205,6 +209,19 @@ pub struct Latch {
     pub event: usize,
     /// The declaring token.
     pub span: Span,
+}
+
+/// A friction on a rigid contact.
+#[derive(Clone, Copy, Debug)]
+pub struct OnContact {
+    /// The contact by its index among the set-valued forces.
+    pub contact: usize,
+    /// Coefficient μ of impacts.
+    pub coefficient: Id,
+    /// Coefficient μ at the present speed.
+    pub sliding: Id,
+    /// Coefficient μₛ.
+    pub sticking: Id,
 }
 
 /// The body that a point is one of: `A of rod`.

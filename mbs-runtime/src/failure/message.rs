@@ -272,6 +272,18 @@ impl fmt::Display for Failure {
                  forces, and leave out frictions along lengths that follow from each other",
                 friction.name, friction.line
             ),
+            FailureKind::ContactUndecided { contact, modes } => write!(
+                f,
+                "{} of contact `{}` (line {}) with its friction at t = {time} s: friction presses it deeper than its force lifts it \
+                 (Painlevé's paradox); lower its coefficient of friction, or give the contact a `stiffness`",
+                if *modes == 0 {
+                    "no force is consistent with the motion"
+                } else {
+                    "several forces are consistent with the motion"
+                },
+                contact.name,
+                contact.line
+            ),
             FailureKind::Penetration { contact, gap } => write!(
                 f,
                 "contact `{}` (line {}) is open with a gap of {gap:e} m at t = {time} s: start with gaps of 0 or more; in a motion take \
@@ -281,7 +293,7 @@ impl fmt::Display for Failure {
             FailureKind::ImpactUndecided { contact } => write!(
                 f,
                 "the impact of contact `{}` (line {}) at t = {time} s is undecided: gaps that follow from each other have coefficients of \
-                 restitution that contradict; give them the same one",
+                 restitution that contradict, or friction leaves several ways to go on; give them the same one, or less friction",
                 contact.name, contact.line
             ),
             FailureKind::Chatter { friction, parts } => write!(
@@ -362,6 +374,7 @@ mod tests {
             FailureKind::Stiction { friction: ROW }.without_time(),
             FailureKind::EventOfMotion { event: ROW }.without_time(),
             FailureKind::StickingUndecided { friction: ROW }.at(time),
+            FailureKind::ContactUndecided { contact: ROW, modes: 0 }.at(time),
             FailureKind::Penetration { contact: ROW, gap: -1e-3 }.at(time),
             FailureKind::ImpactUndecided { contact: ROW }.at(time),
             FailureKind::Chatter { friction: ROW, parts: 64 }.at(time),

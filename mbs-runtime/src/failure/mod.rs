@@ -216,6 +216,14 @@ pub enum FailureKind {
         /// A friction that may stick or slide, or a contact that may open.
         friction: &'static Entry,
     },
+    /// No force of a contact with friction is consistent with the motion, or several are (Painlevé's paradox): friction presses the contact
+    /// deeper than its force lifts it.
+    ContactUndecided {
+        /// The contact.
+        contact: &'static Entry,
+        /// Number of modes found, open, sticking or sliding, that are consistent with different accelerations.
+        modes: u32,
+    },
     /// The gap of a contact is below zero, where it is open, at a start or after a change; or a motion has missed its touch.
     Penetration {
         /// The contact.
@@ -224,7 +232,7 @@ pub enum FailureKind {
         gap: f64,
     },
     /// No impulses of the contacts that touch fulfil their laws of impact at this time: gaps follow from each other, and their coefficients
-    /// of restitution contradict.
+    /// of restitution contradict. Or friction on them allows impulses with several outcomes.
     ImpactUndecided {
         /// A contact that closes.
         contact: &'static Entry,
@@ -428,6 +436,7 @@ impl FailureKind {
             | FailureKind::Ambiguous { .. }
             | FailureKind::SharedNormalForce { .. }
             | FailureKind::StickingUndecided { .. }
+            | FailureKind::ContactUndecided { .. }
             | FailureKind::ImpactUndecided { .. }
             | FailureKind::SingularMass { .. } => FailureSource::Forces,
             FailureKind::Unbounded { .. }

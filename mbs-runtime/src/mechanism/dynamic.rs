@@ -165,6 +165,8 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, 
     const SET_VALUED: &'static [Entry] = &[];
     /// `true` if rigid contacts are among [`SET_VALUED`](Self::SET_VALUED): steps begin with their impacts.
     const HAS_RIGID_CONTACTS: bool = false;
+    /// `true` if frictions on rigid contacts are among [`SET_VALUED`](Self::SET_VALUED).
+    const HAS_FRICTION_ON_CONTACTS: bool = false;
     /// Their modes, sticking or sliding, in the order of [`SET_VALUED`](Self::SET_VALUED). [`force`](Self::force) has the friction of those that
     /// slide and the [`Grip::force`] of those that stick.
     #[inline]
