@@ -413,9 +413,7 @@ where
             changes = open.changes;
         }
         if const { S::HAS_MODES } {
-            changes |= self.strike(t, y)?;
-            changes |= self.switch(t, y, changes)?;
-            changes |= self.decide(t, y, changes)?;
+            changes = self.settle_modes(t, y, changes)?;
         }
         Ok(changes)
     }
@@ -435,12 +433,8 @@ where
             first = self.model.contact_change((self.start, evaluated), (start, end), at, &self.scrutiny)?;
             end = first.unwrap_or(end);
         }
-        if const { !S::EVENTS.is_empty() } && !self.model.first_order {
-            first = self.event(step, (start, end))?.or(first);
-            end = first.unwrap_or(end);
-        }
-        if const { !S::SET_VALUED.is_empty() } && !self.model.first_order {
-            return Ok(self.slip(step, (start, end))?.or(first));
+        if const { S::HAS_MODES } && !self.model.first_order {
+            return self.change_of_modes(step, (start, end), first);
         }
         Ok(first)
     }
