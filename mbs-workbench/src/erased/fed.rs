@@ -209,6 +209,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     const EVENTS: &'static [Entry] = S::EVENTS;
     const LATCHED_BY: &'static [u16] = S::LATCHED_BY;
     const EVENTS_USE_ACCELERATIONS: bool = S::EVENTS_USE_ACCELERATIONS;
+    const HAS_MODES: bool = S::HAS_MODES;
     const HAS_FRICTION_ON_CONTACTS: bool = S::HAS_FRICTION_ON_CONTACTS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
