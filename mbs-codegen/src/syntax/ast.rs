@@ -327,7 +327,7 @@ pub struct Condition {
 /// End of what an event begins.
 #[derive(Clone, Debug)]
 pub enum Ends {
-    /// Where its condition holds no longer.
+    /// The condition of its begin holds no longer.
     Opposite,
     When(Condition),
     Never,

@@ -1,7 +1,7 @@
 //! Events of a text: where they begin and end, and the values that they set.
 
 use crate::dynamics::integrators::event::Scrutiny;
-use crate::dynamics::integrators::event::group::{GROUP, Watched, first_beyond};
+use crate::dynamics::integrators::event::group::{Filled, GROUP, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
@@ -81,7 +81,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         fill: impl FnMut(R, usize, &mut [R; GROUP]),
     ) -> Result<Option<R>, Failure> {
         let scrutiny = Scrutiny { resolution, ..Scrutiny::beyond() };
-        match first_beyond(&mut Conditions { count: S::EVENTS.len(), scrutiny, fill }, times) {
+        match first_beyond(&mut Filled { count: S::EVENTS.len(), scrutiny, fill }, times) {
             Ok(found) => Ok(found.map(|(_, t)| t)),
             Err((member, _)) => {
                 let Entry { name, line, .. } = checks::entry(S::EVENTS, number(member));
@@ -167,31 +167,5 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             }
             None => Ok(found),
         }
-    }
-}
-
-/// The conditions along a step.
-struct Conditions<R, F> {
-    count: usize,
-    scrutiny: Scrutiny<R>,
-    fill: F,
-}
-
-impl<R: Real, F: FnMut(R, usize, &mut [R; GROUP])> Watched<R> for Conditions<R, F> {
-    fn count(&self) -> usize {
-        self.count
-    }
-
-    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
-        (self.fill)(t, first, values);
-    }
-
-    /// Each begins on its side: events were decided there.
-    fn positive(&self, _: usize) -> bool {
-        true
-    }
-
-    fn scrutiny(&mut self, _: usize, _: R) -> Scrutiny<R> {
-        self.scrutiny
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::dynamics::formulations::set_valued::{is_off, limit, no_gap, no_rate, sticks};
 use crate::dynamics::integrators::event::Scrutiny;
-use crate::dynamics::integrators::event::group::{GROUP, Watched, first_beyond};
+use crate::dynamics::integrators::event::group::{Filled, GROUP, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
@@ -44,7 +44,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         fill: impl FnMut(R, usize, &mut [R; GROUP]),
     ) -> Result<Option<R>, Failure> {
         let scrutiny = Scrutiny { resolution, ..Scrutiny::beyond() };
-        match first_beyond(&mut Slips { count: SIDES * S::SET_VALUED.len(), scrutiny, fill }, times) {
+        match first_beyond(&mut Filled { count: SIDES * S::SET_VALUED.len(), scrutiny, fill }, times) {
             Ok(found) => Ok(found.map(|(_, t)| t)),
             Err((member, _)) => {
                 let index = u16::try_from(member / SIDES).unwrap_or(u16::MAX);
@@ -89,31 +89,5 @@ where
                 (false, _) => one,
             };
         }
-    }
-}
-
-/// The functions along a step.
-struct Slips<R, F> {
-    count: usize,
-    scrutiny: Scrutiny<R>,
-    fill: F,
-}
-
-impl<R: Real, F: FnMut(R, usize, &mut [R; GROUP])> Watched<R> for Slips<R, F> {
-    fn count(&self) -> usize {
-        self.count
-    }
-
-    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
-        (self.fill)(t, first, values);
-    }
-
-    /// Each begins on its side: modes were decided there.
-    fn positive(&self, _: usize) -> bool {
-        true
-    }
-
-    fn scrutiny(&mut self, _: usize, _: R) -> Scrutiny<R> {
-        self.scrutiny
     }
 }
