@@ -39,8 +39,14 @@ mechanism! {
         out rim: [m; 2] = p[i] + R*[0, 1];
     }
     out corner: [m; 4, 2] = [[-W, 1.2m], [-W, 0m], [W, 0m], [W, 1.2m]];
-    effect weight { gravity fall { acceleration: [0, -9.81] } }
-    effect floor { for i in 0..3 { contact ground { gap: p[i, 1] - R, restitution: e } } }
+    effect weight {
+        gravity fall { acceleration: [0, -9.81] }
+    }
+    effect floor {
+        for i in 0..3 {
+            contact ground { gap: p[i, 1] - R, restitution: e }
+        }
+    }
     effect walls {
         for i in 0..3 {
             contact left { gap: p[i, 0] + W - R, restitution: e }
@@ -52,7 +58,9 @@ mechanism! {
         contact second { gap: norm(p[2] - p[1]) - 2*R, restitution: e }
         contact third { gap: norm(p[0] - p[2]) - 2*R, restitution: e }
     }
-    effect air { for i in 0..3 { force resistance: -drag*norm(der(p[i]))*der(p[i]) on p[i]; } }
+    effect air {
+        for i in 0..3 { force resistance: -drag*norm(der(p[i]))*der(p[i]) on p[i]; }
+    }
     start p = [[-0.3, 0.9], [0.1, 1.2], [0.35, 0.7]] rate [[1.1, 0.3], [-0.4, 0], [-0.9, 1.5]];
     title "Three balls in a box";
     about "Rigid contacts: impacts with a coefficient of restitution, and rest after infinitely many of them.";
