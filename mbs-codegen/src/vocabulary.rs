@@ -1,8 +1,6 @@
 //! Words, symbols and limits of the language as the parser has them: the tests compare the language reference with them.
 
-use crate::model::{
-    counts, declarations, elaborate, masses_and_forces, names, references, resolve, selection,
-};
+use crate::model::{counts, declarations, elaborate, element_fields, names, references, resolve, selection};
 use crate::picture::MOST_SHAPES;
 #[cfg(test)]
 use crate::syntax::CALLED;
@@ -54,7 +52,7 @@ pub fn fields() -> impl Iterator<Item = (&'static str, &'static str, bool)> {
         ("contact", Element::Contact),
     ];
     elements.into_iter().flat_map(|(word, element)| {
-        masses_and_forces::known(element).into_iter().map(move |(field, _, required)| (word, field, required))
+        element_fields::known(element).into_iter().map(move |(field, _, required)| (word, field, required))
     })
 }
 

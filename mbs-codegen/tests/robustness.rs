@@ -269,7 +269,7 @@ fn words(text: &str) -> Vec<&str> {
     words
 }
 
-const SOUP: [&str; 106] = [
+const SOUP: [&str; 110] = [
     "const",
     "param",
     "input",
@@ -304,6 +304,10 @@ const SOUP: [&str; 106] = [
     "potential",
     "kinetic",
     "dissipation",
+    "event",
+    "latch",
+    "until",
+    "never",
     "mass",
     "com",
     "angle",

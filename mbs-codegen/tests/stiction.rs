@@ -79,6 +79,11 @@ fn wrong_rigid_contacts_are_named() {
             "contact c { gap: y, restitution: 0.5, approach: 1 }",
             "`approach` is of contacts with a `stiffness`",
         ),
+        ("contact c { gap: y, restitution: 0.5, simultaneous: shared }", "`simultaneous` is `shared`"),
+        (
+            "contact c { gap: y, stiffness: 1e5, simultaneous: ordered }",
+            "`c` has a stiffness and a `simultaneous`",
+        ),
         ("contact c { gap: y, restitution: 0.5, bound: 10 }", "`bound` is of contacts with a `stiffness`"),
         ("contact c { gap: y, restitution: e }", "`1 - restitution` of `c` is negative"),
         ("contact c { gap: y, restitution: -0.1 }", "`restitution` of `c` is negative"),
@@ -91,5 +96,37 @@ fn wrong_rigid_contacts_are_named() {
         let found = said(&format!("{contacts}\nout push: N = force(c);"));
         assert!(found.contains(message), "{contacts}: {found}");
         assert!(!found.contains("depends on itself"), "{contacts}: {found}");
+    }
+}
+
+#[test]
+fn friction_on_rigid_contacts_is_told_apart() {
+    let expand = |statements: &str| {
+        mbs_codegen::expand_source(&format!(
+            "/// Block.\npub mechanism B;\ncoord p: [m; 2] = [0, 1];\nbody block {{ mass: 1kg, com: p }}\ncontact floor {{ gap: p[1], restitution: 0.5 }}\n{statements}"
+        ))
+    };
+    let word = "HAS_FRICTION_ON_CONTACTS";
+    for (friction, has) in [
+        ("along: p[0], normal: normal(floor), coefficient: 0.2, sticks: 0.3", true),
+        ("along: p[0], normal: force(floor), coefficient: 0.2, sticks: 0.3, speed: 0.1, viscous: 2", true),
+        ("along: p[0], normal: 2N, coefficient: 0.2, sticks: 0.3", false),
+    ] {
+        let tokens = expand(&format!("friction rub {{ {friction} }}")).expect("it expands").to_string();
+        assert_eq!(tokens.contains(word), has, "{friction}");
+        assert_eq!(tokens.contains("OnContact"), has, "{friction}");
+    }
+    // Other laws, and other functions of the force, have no mode to be found.
+    for friction in [
+        "along: p[0], normal: normal(floor), coefficient: 0.2, speed: 0.1",
+        "along: p[0], normal: normal(floor), coefficient: 0.2, bristles: 1mm",
+        "along: p[0], normal: 2*normal(floor), coefficient: 0.2, sticks: 0.3",
+    ] {
+        let said = expand(&format!("friction rub {{ {friction} }}")).expect_err("it is refused");
+        assert!(
+            said.contains("`rub` needs the force of a friction that sticks, or of a rigid contact"),
+            "{said}"
+        );
+        assert!(said.contains("may be that of one rigid contact"), "{said}");
     }
 }

@@ -12,6 +12,7 @@
 //! ```
 
 pub mod andrews;
+pub mod bouncing_balls;
 pub mod bricard;
 pub mod cam_flat;
 pub mod cam_law;
@@ -114,6 +115,7 @@ pub static CATALOGUE: Catalogue = Catalogue {
         bricard::CARD,
         governor::CARD,
         slider_crank_engine::CARD,
+        bouncing_balls::CARD,
         slider_crank_mass::RELEASED,
         four_bar_mass::RELEASED,
     ],

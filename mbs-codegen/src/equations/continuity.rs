@@ -132,7 +132,7 @@ fn demands(model: &Model, equations: &Equations) -> Vec<Demand> {
 }
 
 /// The functions of masses and forces.
-fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 18] {
+fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 19] {
     let some = |nodes: &[Option<NodeId>]| nodes.iter().copied().flatten().collect::<Vec<_>>();
     let entries = |matrix: &Sparse| matrix.iter().flatten().map(|(_, entry)| *entry).collect::<Vec<_>>();
     [
@@ -153,6 +153,7 @@ fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 18] {
         ("an output of multipliers or states", dynamics.loads.clone()),
         ("the gap of a contact", dynamics.gaps.iter().flat_map(|gap| gap.roots()).collect()),
         ("a friction", dynamics.sticking.iter().flat_map(Sticking::roots).collect()),
+        ("an event", dynamics.events.roots().collect()),
         ("the start", [some(&dynamics.start_states), some(&dynamics.start_rates)].concat()),
     ]
 }

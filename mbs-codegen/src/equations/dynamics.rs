@@ -3,6 +3,7 @@
 use super::acting_bodies::{Attribution, Undetermined};
 use super::contacts::{ByContact, Push, by_contact};
 use super::deferred::Missing;
+use super::events::Events;
 use super::generalized_forces::{self, Acting};
 use super::inertia::Inertia;
 use super::lower::Clock;
@@ -121,6 +122,8 @@ pub struct Dynamics {
     pub gaps: Vec<Gap>,
     /// One a friction with stiction.
     pub sticking: Vec<Sticking>,
+    /// Conditions of events and values that they latch.
+    pub events: Events,
     /// Q contact by contact, where there are contacts.
     pub by_contact: Option<ByContact>,
     /// Time derivatives of the working ranges, by which parts of a motion can be enclosed. Given where the text calls no function and
@@ -180,6 +183,7 @@ impl Dynamics {
             roots.extend([rate, bound].into_iter().flatten());
         }
         roots.extend(self.sticking.iter_mut().flat_map(Sticking::roots_mut));
+        roots.extend(self.events.roots_mut());
         roots.extend(self.limit_rates.iter_mut().flatten().flatten());
         roots.extend(self.by_contact.iter_mut().flat_map(ByContact::roots_mut));
         roots
@@ -279,6 +283,7 @@ pub fn derive(
         signed: signed(g, bounded.into_iter()),
         gaps,
         sticking: sticking(g, &declared.sticking, &of, clock, count),
+        events: Events::of(declared, &of),
         by_contact,
         limit_rates: Vec::new(),
         missing: Vec::new(),

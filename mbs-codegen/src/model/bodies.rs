@@ -1,8 +1,9 @@
 //! Bodies: their masses and rotations, in a plane or in space.
 
 use super::dynamics::{Body, Rotation};
+use super::element_fields::ORIENTATION;
 use super::inertia::Inertia;
-use super::masses_and_forces::{Given, ORIENTATION};
+use super::masses_and_forces::Given;
 use super::resolver::Resolver;
 use super::value::{Fault, Value};
 use crate::syntax::ast::Name;

@@ -21,6 +21,11 @@ impl Resolver<'_> {
         if given.value("stiffness").is_none() {
             return self.rigid_contact(name, full, given);
         }
+        if given.has("simultaneous") {
+            let message = format!("`{}` has a stiffness and a `simultaneous`", name.text);
+            let help = "leave out one of them: a contact with `stiffness` has no impacts";
+            return Err(self.fault(name.span, message, help));
+        }
         let field = |field: &str| given.scalar(field).ok_or(Fault);
         let (gap, stiffness) = (field("gap")?, field("stiffness")?);
         let power = match (given.scalar("exponent"), given.scalar("depth")) {
@@ -77,7 +82,7 @@ impl Resolver<'_> {
         let (field, of) = ("1 - restitution", name.text.clone());
         let dynamics = self.dynamics();
         dynamics.signed.push(NonNegative { field, least: Least::Zero, of, value: rest, span });
-        let law = SetValued::Contact { restitution };
+        let law = SetValued::Contact { restitution, ordered: given.has("simultaneous") };
         dynamics.sticking.push(Sticking { name: full.clone(), along: gap, law, span });
         self.names.seen.define(&name.text, Seen::Contact { gap, force });
         self.force(name, full, Action::Work(vec![(force, gap)]));

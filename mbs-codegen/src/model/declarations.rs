@@ -86,6 +86,8 @@ pub fn declare(
     for statement in faulty.into_iter().chain(in_loops) {
         work.stand_in(statement);
     }
+    work.events(&top);
+    work.give_up(&top, |kind| matches!(kind, StatementKind::Event { .. } | StatementKind::Latch { .. }));
     let late = late_lets(&top);
     for name in &late {
         work.names.postpone(name);
@@ -259,7 +261,9 @@ impl Declarations<'_> {
                 (name, Declares::Input { rates: *rates }, Some(kind))
             }
             StatementKind::Coord { name, kind, .. } => (name, Declares::Coord, Some(kind)),
-            StatementKind::State { name, .. } => (name, Declares::Value, None),
+            StatementKind::State { name, .. }
+            | StatementKind::Event { name, .. }
+            | StatementKind::Latch { name, .. } => (name, Declares::Value, None),
             StatementKind::Function { name, .. } => (name, Declares::Function, None),
             StatementKind::Curve { name, .. } => (name, Declares::Value, None),
             _ => return,
@@ -270,6 +274,13 @@ impl Declarations<'_> {
                 format!("`{}` is declared inside a loop", name.text),
                 match declares {
                     Declares::Function => "declare it before the loop",
+                    _ if matches!(
+                        statement.kind,
+                        StatementKind::Event { .. } | StatementKind::Latch { .. }
+                    ) =>
+                    {
+                        "declare one event after the other outside of the loop: their conditions may use any component"
+                    }
                     Declares::Value if matches!(statement.kind, StatementKind::Curve { .. }) => {
                         "declare it before the loop; points in the loop may be on it"
                     }

@@ -25,6 +25,10 @@ pub struct Dynamics {
     pub contacts: Vec<Contact>,
     /// Frictions with stiction and rigid contacts, in the order of the text.
     pub sticking: Vec<Sticking>,
+    /// Events, in the order of the text.
+    pub events: Vec<Event>,
+    /// Values that they latch, component by component.
+    pub latches: Vec<Latch>,
     /// Energies that `potential` adds (J).
     pub potentials: Vec<Id>,
     /// Energies that `kinetic` adds (J).
@@ -41,6 +45,16 @@ pub struct Dynamics {
     pub signed: Vec<NonNegative>,
     /// Inertia of bodies in space.
     pub inertias: Vec<Inertia>,
+}
+
+impl Dynamics {
+    /// Name of a value that events set.
+    pub fn remembered(&self, slot: usize) -> Option<&str> {
+        match slot.checked_sub(self.events.len()) {
+            None => self.events.get(slot).map(|event| event.name.as_str()),
+            Some(index) => self.latches.get(index).map(|latch| latch.name.as_str()),
+        }
+    }
 }
 
 /// A rigid body in a plane or in space, or a point mass.
@@ -158,11 +172,56 @@ pub enum SetValued {
         /// Largest force.
         limit: Id,
     },
+    /// Up to a multiple of the force of a rigid contact.
+    FrictionOnContact(OnContact),
     /// Any force that pushes, with impacts of a coefficient of restitution.
     Contact {
         /// Coefficient of restitution.
         restitution: Id,
+        /// `true` if its impacts are its own, one after the other with those of others.
+        ordered: bool,
     },
+}
+
+/// An event, which begins where the first value of a condition exceeds the second, and ends where another condition holds.
+#[derive(Debug)]
+pub struct Event {
+    /// Its name.
+    pub name: String,
+    /// Condition of its begin; none before it is resolved, or where that is faulty.
+    pub begins: Option<[Id; 2]>,
+    /// Condition of its end; none where it never ends.
+    pub ends: Option<[Id; 2]>,
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// A value that an event latches where it begins.
+#[derive(Debug)]
+pub struct Latch {
+    /// Name, with the component's number for arrays.
+    pub name: String,
+    /// Unit as written.
+    pub unit: String,
+    /// Its definition; none before it is resolved, or where that is faulty.
+    pub value: Option<Id>,
+    /// Index of the event.
+    pub event: usize,
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// A friction on a rigid contact.
+#[derive(Clone, Copy, Debug)]
+pub struct OnContact {
+    /// The contact by its index among the set-valued forces.
+    pub contact: usize,
+    /// Coefficient μ of impacts.
+    pub coefficient: Id,
+    /// Coefficient μ at the present speed.
+    pub sliding: Id,
+    /// Coefficient μₛ.
+    pub sticking: Id,
 }
 
 /// The body that a point is one of: `A of rod`.

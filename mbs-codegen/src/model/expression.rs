@@ -41,6 +41,8 @@ pub enum Node {
     Sliding(usize),
     /// Force along the length with which it sticks; 0 where it slides.
     Holding(usize),
+    /// A value that events set: of one that holds 1, otherwise 0; then those that they latch.
+    Remembered(usize),
     /// A component of the force of a pin on the first of its bodies, by the pin's index.
     Pin(usize, usize),
     /// A function of one argument.
@@ -254,11 +256,17 @@ impl Id {
 }
 
 impl Node {
-    /// `true` for what the equations of motion alone know: states, multipliers, forces of pins, how friction sticks and slides.
+    /// `true` for what the equations of motion alone know: states, multipliers, forces of pins, how friction sticks and slides, values that
+    /// events set.
     pub fn is_of_motion(self) -> bool {
         matches!(
             self,
-            Node::State(_) | Node::Multiplier(_) | Node::Pin(..) | Node::Sliding(_) | Node::Holding(_)
+            Node::State(_)
+                | Node::Multiplier(_)
+                | Node::Pin(..)
+                | Node::Sliding(_)
+                | Node::Holding(_)
+                | Node::Remembered(_)
         )
     }
 
@@ -273,6 +281,7 @@ impl Node {
             | Node::Multiplier(_)
             | Node::Sliding(_)
             | Node::Holding(_)
+            | Node::Remembered(_)
             | Node::Pin(..)
             | Node::Margin(_) => (None, None),
             Node::Unary(_, a) | Node::Rate(a, _) | Node::Call { argument: a, .. } | Node::Ratio(a, _) => {

@@ -1,6 +1,6 @@
 //! Friction laws → forces along a length.
 
-use super::dynamics::{Action, SetValued, Sticking};
+use super::dynamics::{Action, OnContact, SetValued, Sticking};
 use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
 use super::forces_by_name::Force as Seen;
@@ -26,10 +26,17 @@ impl Resolver<'_> {
             [bristles.force; 2]
         } else if let Some(most) = given.scalar("sticks") {
             let index = self.dynamics().sticking.len();
-            let [limit, force, sliding] = self.elaborate(Reach::Force, |work| {
-                set_valued(work, index, [along, normal, coefficient, most], given, name)
+            let contact = self.rigid_contact_of(normal);
+            let Law { most, limit, force, sliding, slope } = self.elaborate(Reach::Force, |work| {
+                set_valued(work, (index, contact), [along, normal, coefficient, most], given, name)
             })?;
-            let law = SetValued::Friction { limit };
+            let law = match contact {
+                None => SetValued::Friction { limit },
+                Some(contact) => {
+                    let on = OnContact { contact, coefficient, sliding: slope, sticking: most };
+                    SetValued::FrictionOnContact(on)
+                }
+            };
             self.dynamics().sticking.push(Sticking { name: full.clone(), along, law, span });
             [force, sliding]
         } else {
@@ -52,8 +59,15 @@ impl Resolver<'_> {
         Ok(())
     }
 
+    /// The rigid contact whose force a normal force is, by its index among the set-valued forces.
+    fn rigid_contact_of(&self, normal: Id) -> Option<usize> {
+        let Node::Holding(index) = self.model.expressions.node(normal) else { return None };
+        let row = self.model.dynamics.as_ref()?.sticking.get(index)?;
+        matches!(row.law, SetValued::Contact { .. }).then_some(index)
+    }
+
     /// Reports forces and rates made of a force that holds: it is what the balance with all other forces leaves, so these cannot need it.
-    /// That of a rigid contact is one.
+    /// That of a rigid contact is one, but for the frictions that stick on it.
     pub(super) fn check_holding(&mut self) {
         let Some(dynamics) = self.model.dynamics.as_ref().filter(|dynamics| !dynamics.sticking.is_empty())
         else {
@@ -76,7 +90,13 @@ impl Resolver<'_> {
                 Action::Line(line) => vec![line.stiffness, line.length, line.damping, line.actuator],
                 Action::Turn(turn) => vec![turn.stiffness, turn.rest, turn.damping, turn.torque],
             };
-            if parts.into_iter().flatten().any(|part| holding(part, &|name| name != force.name)) {
+            let own = dynamics.sticking.iter().find(|row| row.name == force.name);
+            let normal = own.and_then(|row| match row.law {
+                SetValued::FrictionOnContact(on) => dynamics.sticking.get(on.contact),
+                _ => None,
+            });
+            let other = |name: &str| name != force.name && normal.is_none_or(|normal| name != normal.name);
+            if parts.into_iter().flatten().any(|part| holding(part, &other)) {
                 faults.push((
                     force.span,
                     format!(
@@ -96,7 +116,7 @@ impl Resolver<'_> {
             }
         }
         for (span, message) in faults {
-            let help = "outputs know the force that holds, forces and rates the `power` alone; or write `speed` in place of `sticks`, and `stiffness` in the contact";
+            let help = "outputs know the force that holds, forces and rates the `power` alone; or write `speed` in place of `sticks`, and `stiffness` in the contact; the normal force of a friction with `sticks` may be that of one rigid contact";
             self.diagnostics.report(span, message, help);
         }
     }
@@ -115,24 +135,41 @@ pub(super) fn with_drag(
     work.push_binary(Binary::Add, force, drag, name.span)
 }
 
-/// The largest force μₛ |N| of a friction with stiction, its force h − σ μ |N| − c ṡ, and the same without h.
+/// A set-valued law of friction.
+struct Law {
+    /// μₛ.
+    most: Id,
+    /// The largest force μₛ |N| with which it sticks.
+    limit: Id,
+    /// The force h − σ μ |N| − c ṡ.
+    force: Id,
+    /// The same without h.
+    sliding: Id,
+    /// μ at the present speed.
+    slope: Id,
+}
+
+/// The law of a friction with stiction: σ is the direction of sliding, h the force while it sticks. On a rigid contact N ≥ 0.
 ///
-/// σ is the direction of sliding, h the force while it sticks. μ is the coefficient, or falls from μₛ to it as
-/// exp(−(ṡ/v)²) where a speed is given. A μₛ below the coefficient counts as the coefficient.
+/// μ is the coefficient, or falls from μₛ to it as exp(−(ṡ/v)²) where a speed is given. A μₛ below the coefficient counts as
+/// the coefficient.
 /// Source: Bo & Pavelescu 1982, the exponential model with the exponent 2.
 fn set_valued(
     work: &mut Elaborator<'_>,
-    index: usize,
+    (index, contact): (usize, Option<usize>),
     [along, normal, coefficient, most]: [Id; 4],
     given: &Given,
     name: &Name,
-) -> Result<[Id; 3], Fault> {
+) -> Result<Law, Fault> {
     let span = name.span;
     let rate = work.expressions.push(Node::Rate(along, 1));
-    let pressure = work.push_unary(Unary::Abs, normal, span)?;
+    let pressure = match contact {
+        Some(_) => normal,
+        None => work.push_unary(Unary::Abs, normal, span)?,
+    };
     let most = work.push_binary(Binary::Max, most, coefficient, span)?;
     let limit = work.push_binary(Binary::Multiply, most, pressure, span)?;
-    let mut slides = coefficient;
+    let mut slope = coefficient;
     if let Some(speed) = given.scalar("speed") {
         let ratio = work.push_binary(Binary::Divide, rate, speed, span)?;
         let square = work.push_binary(Binary::Multiply, ratio, ratio, span)?;
@@ -140,14 +177,14 @@ fn set_valued(
         let share = work.push_unary(Unary::Exp, exponent, span)?;
         let rise = work.push_binary(Binary::Subtract, most, coefficient, span)?;
         let rise = work.push_binary(Binary::Multiply, rise, share, span)?;
-        slides = work.push_binary(Binary::Add, coefficient, rise, span)?;
+        slope = work.push_binary(Binary::Add, coefficient, rise, span)?;
     }
-    let resistance = work.push_binary(Binary::Multiply, slides, pressure, span)?;
+    let resistance = work.push_binary(Binary::Multiply, slope, pressure, span)?;
     let direction = work.expressions.push(Node::Sliding(index));
     let force = work.push_binary(Binary::Multiply, resistance, direction, span)?;
     let force = with_drag(work, force, rate, given, name)?;
     let sliding = work.push_unary(Unary::Negate, force, span)?;
     let holding = work.expressions.push(Node::Holding(index));
     let force = work.push_binary(Binary::Subtract, holding, force, span)?;
-    Ok([limit, force, sliding])
+    Ok(Law { most, limit, force, sliding, slope })
 }

@@ -4,6 +4,7 @@ use proc_macro2::Span;
 
 use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic};
 use super::elaborator::Elaborator;
+use super::element_fields::{FieldKind, known};
 use super::expression::{Id, Node};
 use super::forces_by_name::Force as Seen;
 use super::inertia::check_shape;
@@ -29,99 +30,25 @@ pub fn is_dynamic(statement: &Statement) -> bool {
             | StatementKind::Energy { .. }
             | StatementKind::State { .. }
             | StatementKind::Rate { .. }
+            | StatementKind::Event { .. }
+            | StatementKind::Latch { .. }
     )
 }
-
-/// The field that makes a body one in space.
-pub const ORIENTATION: &str = "orientation";
 
 /// The fields of a tension that are points of bodies.
 const ENDS: [&str; 2] = ["from", "to"];
 
-/// Kind of value in a field.
-#[derive(Clone, Copy)]
-pub enum FieldKind {
-    /// A number of a unit, of parameters alone.
-    Constant(Dimension),
-    /// A number of a unit, at the reach.
-    Scalar(Dimension, Reach),
-    /// A point of two or three components.
-    Point,
-    /// A vector of a unit, of constants, inputs and the time.
-    Vector(Dimension),
-    /// One moment of inertia, three principal ones or all six entries, of parameters alone.
-    Inertia,
-    /// Four Euler parameters.
-    Orientation,
-}
-
-/// A field of an element: its name, its kind of value, `true` if it must be given.
-pub type Known = (&'static str, FieldKind, bool);
-
-/// Fields of an element, in the order of the reference.
-pub fn known(element: Element) -> Vec<Known> {
-    let per_metre = Dimension::NEWTON.over(Dimension::METRE);
-    let scalar = |dimension| FieldKind::Scalar(dimension, Reach::Force);
-    match element {
-        Element::Body => vec![
-            ("mass", FieldKind::Constant(Dimension::KILOGRAM), true),
-            ("com", FieldKind::Point, true),
-            ("inertia", FieldKind::Inertia, false),
-            ("angle", FieldKind::Scalar(Dimension::NUMBER, Reach::Position), false),
-            (ORIENTATION, FieldKind::Orientation, false),
-        ],
-        Element::Gravity => {
-            let acceleration = Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND);
-            vec![("acceleration", FieldKind::Vector(acceleration), true)]
-        }
-        Element::Tsda => vec![
-            ("from", FieldKind::Point, true),
-            ("to", FieldKind::Point, true),
-            ("stiffness", scalar(per_metre), false),
-            ("length", scalar(Dimension::METRE), false),
-            ("damping", scalar(per_metre.times(Dimension::SECOND)), false),
-            ("actuator", scalar(Dimension::NEWTON), false),
-        ],
-        Element::Rsda => vec![
-            ("angle", FieldKind::Scalar(Dimension::NUMBER, Reach::Position), true),
-            ("stiffness", scalar(Dimension::JOULE), false),
-            ("rest", scalar(Dimension::NUMBER), false),
-            ("damping", scalar(Dimension::JOULE.times(Dimension::SECOND)), false),
-            ("torque", scalar(Dimension::JOULE), false),
-        ],
-        Element::Friction => vec![
-            ("along", FieldKind::Scalar(Dimension::METRE, Reach::Position), true),
-            ("normal", scalar(Dimension::NEWTON), true),
-            ("coefficient", scalar(Dimension::NUMBER), true),
-            ("speed", FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND)), true),
-            ("viscous", scalar(per_metre.times(Dimension::SECOND)), false),
-            ("sticks", scalar(Dimension::NUMBER), false),
-            ("bristles", FieldKind::Constant(Dimension::METRE), false),
-            ("damping", scalar(Dimension::SECOND.over(Dimension::METRE)), false),
-        ],
-        Element::Contact => vec![
-            ("gap", FieldKind::Scalar(Dimension::METRE, Reach::Position), true),
-            ("stiffness", scalar(per_metre), true),
-            ("exponent", FieldKind::Constant(Dimension::NUMBER), false),
-            ("depth", FieldKind::Constant(Dimension::METRE), false),
-            ("damping", scalar(Dimension::SECOND.over(Dimension::METRE)), false),
-            ("restitution", FieldKind::Constant(Dimension::NUMBER), false),
-            ("approach", FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND)), false),
-            (
-                "bound",
-                FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND)),
-                false,
-            ),
-        ],
-    }
-}
-
-/// The values of an element's fields.
-pub(super) struct Given(Vec<(&'static str, Value)>);
+/// The values of an element's fields, and its fields that are words.
+pub(super) struct Given(Vec<(&'static str, Value)>, Vec<&'static str>);
 
 impl Given {
     pub(super) fn value(&self, name: &str) -> Option<&Value> {
         self.0.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
+    }
+
+    /// `true` if the field that is a word is given.
+    pub(super) fn has(&self, word: &str) -> bool {
+        self.1.contains(&word)
     }
 
     pub(super) fn scalar(&self, name: &str) -> Option<Id> {
@@ -183,7 +110,7 @@ impl Resolver<'_> {
     /// Before: fields as written. After: values of all that are known; others, and missing ones, are reported.
     fn fields(&mut self, kind: Element, name: &Name, fields: &[Field]) -> Result<Given, Fault> {
         let (kind_of, known) = (kind, known(kind));
-        let mut given = Given(Vec::new());
+        let mut given = Given(Vec::new(), Vec::new());
         let mut faulty = false;
         // A required field that another name was meant for is not missing too.
         let mut misspelled: Vec<&str> = Vec::new();
@@ -207,7 +134,7 @@ impl Resolver<'_> {
                 faulty = true;
                 continue;
             };
-            if given.value(known_name).is_some() {
+            if given.value(known_name).is_some() || given.has(known_name) {
                 let message = format!("field `{known_name}` is given twice");
                 let _reported = self.fault(field.name.span, message, "remove one of them");
                 faulty = true;
@@ -219,6 +146,11 @@ impl Resolver<'_> {
                 let help = "leave out `of …`: it stands behind the ends of a `tsda`, and behind the point of a `force`";
                 let _reported = self.fault(of.name.span, message, help);
                 faulty = true;
+            }
+            if let FieldKind::Word(word) = kind {
+                faulty |= self.word(field, word).is_err();
+                given.1.push(known_name);
+                continue;
             }
             match self.field(field, *kind) {
                 Ok(value) => {
@@ -271,13 +203,26 @@ impl Resolver<'_> {
         value
     }
 
+    fn word(&mut self, field: &Field, word: &str) -> Result<(), Fault> {
+        let given = written(&field.value.code);
+        if given == word {
+            return Ok(());
+        }
+        let message = format!("`{}` is `{given}`", field.name.text);
+        Err(self.fault(
+            field.name.span,
+            message,
+            format!("write `{}: {word}`, or leave it out", field.name.text),
+        ))
+    }
+
     fn field(&mut self, field: &Field, kind: FieldKind) -> Result<Value, Fault> {
         let (dimension, reach) = match kind {
             FieldKind::Constant(dimension) | FieldKind::Vector(dimension) => (dimension, Reach::Position),
             FieldKind::Scalar(dimension, reach) => (dimension, reach),
             FieldKind::Point => (Dimension::METRE, Reach::Position),
             FieldKind::Inertia => (Dimension::INERTIA, Reach::Position),
-            FieldKind::Orientation => (Dimension::NUMBER, Reach::Position),
+            FieldKind::Orientation | FieldKind::Word(_) => (Dimension::NUMBER, Reach::Position),
         };
         let user = format!("`{}`", field.name.text);
         let value = self.elaborate(reach, |work| {
@@ -298,6 +243,7 @@ impl Resolver<'_> {
                 FieldKind::Point | FieldKind::Vector(_) => point(work, &value, &user)?,
                 FieldKind::Inertia => check_shape(work, &value)?,
                 FieldKind::Orientation => parameters(work, &value, &user).map(|_| ())?,
+                FieldKind::Word(_) => {}
             }
             Ok::<_, Fault>(value)
         })?;

@@ -18,6 +18,8 @@ mod drives;
 pub mod dynamics;
 pub mod elaborate;
 pub mod elaborator;
+pub mod element_fields;
+mod event;
 pub mod expression;
 pub mod forces_by_name;
 mod friction;

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use proc_macro2::Span;
 
 use super::ConstraintRow;
+use super::element_fields::ORIENTATION;
 use super::expression::{Expressions, Id, Node};
 use super::initialiser::initialiser;
-use super::masses_and_forces::ORIENTATION;
 use super::resolver::Resolver;
 use super::rotation::{join, parameters};
 use super::units::Dimension;

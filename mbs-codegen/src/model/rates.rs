@@ -4,6 +4,7 @@ use proc_macro2::Span;
 
 use super::elaborator::Elaborator;
 use super::expression::Node;
+use super::names::Symbol;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
 
@@ -49,12 +50,23 @@ impl Elaborator<'_> {
         })
     }
 
+    fn is_set_by_an_event(&self, name: &str) -> bool {
+        let Some(Symbol::Value(value)) = self.names.get(name) else { return false };
+        value.items.iter().any(|item| matches!(self.expressions.node(item.id), Node::Remembered(_)))
+    }
+
     /// Before: a name with a value. After: the quantities of its `let` are allowed here, or the fault is reported.
     pub(super) fn allows(&mut self, name: &str, span: Span) -> Result<(), Fault> {
         let needs = self.names.needs(name);
         self.needs = self.needs.max(needs);
         if needs <= self.reach {
             return Ok(());
+        }
+        if self.is_set_by_an_event(name) {
+            let message = format!("`{name}` is set by an event and stands outside an output or a force");
+            let help = "values that events set may stand in forces, rates of states, outputs and other conditions; a row holds \
+                        throughout a motion";
+            return Err(self.fault(span, message, help));
         }
         Err(if self.reach == Reach::Position {
             self.fault(span, format!("`{name}` takes a rate and stands outside an output or a force"), RATES)

@@ -61,6 +61,7 @@ pub fn resolve(
         work.check_states();
         work.check_pins();
         work.check_holding();
+        work.check_events();
     }
     work.check_normalisations();
     work.check_guesses();
@@ -161,6 +162,8 @@ impl Resolver<'_> {
             StatementKind::Energy { kind, name, value } => self.energy(*kind, name, value),
             StatementKind::Rate { state, rate, span } => self.rate_of_state(state, rate, *span),
             StatementKind::Let { name, unit, value } => self.late_let(name, unit.as_ref(), value),
+            StatementKind::Event { name, begins, ends } => self.event(name, begins, ends),
+            StatementKind::Latch { name, value, .. } => self.latch(name, value),
             _ => Ok(()),
         }
     }
@@ -343,6 +346,8 @@ fn is_load(kind: &StatementKind) -> bool {
             | StatementKind::Load { .. }
             | StatementKind::Energy { .. }
             | StatementKind::Rate { .. }
+            | StatementKind::Event { .. }
+            | StatementKind::Latch { .. }
     )
 }
 

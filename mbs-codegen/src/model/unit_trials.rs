@@ -149,6 +149,7 @@ fn declared(kind: &StatementKind) -> Option<(&'static str, &Name, &Unit, Option<
         StatementKind::Input { name, kind, .. } => ("input", name, &kind.unit, Some(kind)),
         StatementKind::Coord { name, kind, .. } => ("coord", name, &kind.unit, Some(kind)),
         StatementKind::State { name, kind, .. } => ("state", name, &kind.unit, Some(kind)),
+        StatementKind::Latch { name, kind, .. } => ("latch", name, &kind.unit, Some(kind)),
         StatementKind::Out { name, kind, .. } => ("out", name, &kind.unit, Some(kind)),
         StatementKind::Function { name, signature } => ("function", name, &signature.unit, None),
         _ => return None,
@@ -162,6 +163,7 @@ fn set_unit(kind: &mut StatementKind, new: Unit) {
         | StatementKind::Input { kind, .. }
         | StatementKind::Coord { kind, .. }
         | StatementKind::State { kind, .. }
+        | StatementKind::Latch { kind, .. }
         | StatementKind::Out { kind, .. } => kind.unit = new,
         StatementKind::Function { signature, .. } => signature.unit = new,
         _ => {}

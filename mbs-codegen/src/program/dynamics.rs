@@ -47,6 +47,8 @@ pub struct DynamicsProgram {
     pub gaps: Section,
     /// Rows of frictions with stiction.
     pub sticking: Section,
+    /// Conditions of events, and values that they latch.
+    pub events: Section,
     /// Rates of working ranges.
     pub limit_rates: Section,
     /// Forces by contact, where there are contacts.
@@ -80,6 +82,7 @@ pub struct Roots {
     loads: Vec<NodeId>,
     gaps: Vec<NodeId>,
     sticking: Vec<NodeId>,
+    events: Vec<NodeId>,
     limit_rates: Vec<NodeId>,
     by_contact: Option<ContactRoots>,
     start_states: Vec<NodeId>,
@@ -111,6 +114,7 @@ impl Roots {
             loads: dynamics.loads.clone(),
             gaps: dynamics.gaps.iter().flat_map(Gap::roots).collect(),
             sticking: dynamics.sticking.iter().flat_map(Sticking::roots).collect(),
+            events: dynamics.events.roots().collect(),
             limit_rates: dynamics.limit_rates.iter().flatten().copied().flatten().collect(),
             by_contact: ContactRoots::of(dynamics),
             start_states: some(&dynamics.start_states),
@@ -127,7 +131,7 @@ impl Roots {
 
     /// Functions that some methods call, or that are not called in every step: no value is kept for them alone.
     pub fn rare(&self) -> impl Iterator<Item = &[NodeId]> {
-        let all: [&[NodeId]; 15] = [
+        let all: [&[NodeId]; 16] = [
             &self.force_q,
             &self.force_qd,
             &self.force_lambda,
@@ -142,6 +146,7 @@ impl Roots {
             &self.loads,
             &self.gaps,
             &self.sticking,
+            &self.events,
             &self.limit_rates,
         ];
         let by_contact = self.by_contact.iter();
@@ -183,6 +188,7 @@ impl Roots {
             loads: section(&self.loads),
             gaps: section(&self.gaps),
             sticking: section(&self.sticking),
+            events: section(&self.events),
             limit_rates: section(&self.limit_rates),
             by_contact: self.by_contact.as_ref().map(|roots| roots.order(graph, &section, behind)),
             start_states: early(&self.start_states),

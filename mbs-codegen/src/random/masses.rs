@@ -84,7 +84,8 @@ impl Numbers {
                 | Node::Margin(_)
                 | Node::Ratio(..)
                 | Node::Sliding(_)
-                | Node::Holding(_) => {
+                | Node::Holding(_)
+                | Node::Remembered(_) => {
                     unreachable!("random texts with masses use no `der2`, no pin, no margin and no ratio")
                 }
             };

@@ -145,7 +145,12 @@ fn evaluate(model: &Model, state: &Evaluation, line: Direction) -> Vec<Jet> {
             }
             // Part of forces alone: anywhere else it would make every comparison fail.
             Node::Rate(..) | Node::State(_) | Node::Multiplier(_) => Jet::constant(f64::NAN),
-            Node::Pin(..) | Node::Margin(_) | Node::Ratio(..) | Node::Sliding(_) | Node::Holding(_) => {
+            Node::Pin(..)
+            | Node::Margin(_)
+            | Node::Ratio(..)
+            | Node::Sliding(_)
+            | Node::Holding(_)
+            | Node::Remembered(_) => {
                 unreachable!("random texts use no pin, no margin and no ratio")
             }
         };

@@ -40,6 +40,8 @@ pub enum Leaf {
     Sliding(u32),
     /// Force with which it sticks, given from outside.
     Holding(u32),
+    /// Value that events set: constant within a step, given from outside.
+    Remembered(u32),
     /// Computed outside, from the position: known with the accelerations.
     Given(u32, u32),
 }
@@ -146,7 +148,8 @@ impl Graph {
                 | Leaf::Multiplier(_)
                 | Leaf::Direction(_)
                 | Leaf::Sliding(_)
-                | Leaf::Holding(_),
+                | Leaf::Holding(_)
+                | Leaf::Remembered(_),
             ) => Stage::Velocity,
             Node::Leaf(Leaf::Acceleration(_) | Leaf::Given(..)) => Stage::Acceleration,
             // The value of a function is known with the design, not before, even at a number.

@@ -18,6 +18,7 @@ pub fn scattered(leaf: Leaf, trial: usize) -> f64 {
         Leaf::Given(group, index) => (10 + u64::from(group), index),
         Leaf::Sliding(index) => (1 << 40, index),
         Leaf::Holding(index) => (1 << 41, index),
+        Leaf::Remembered(index) => (1 << 42, index),
     };
     fraction(kind, index, trial)
 }

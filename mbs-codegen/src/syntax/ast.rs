@@ -227,6 +227,19 @@ pub enum StatementKind {
     Independent {
         names: Vec<Name>,
     },
+    /// `event name: begins until ends;`
+    Event {
+        name: Name,
+        begins: Condition,
+        ends: Ends,
+    },
+    /// `latch name: kind = value at event;`
+    Latch {
+        name: Name,
+        kind: Type,
+        value: Expression,
+        event: Name,
+    },
     Out {
         name: Name,
         kind: Type,
@@ -302,6 +315,22 @@ pub enum StatementKind {
         declares: Declares,
         kind: Option<Type>,
     },
+}
+
+/// `larger > smaller`
+#[derive(Clone, Debug)]
+pub struct Condition {
+    pub larger: Expression,
+    pub smaller: Expression,
+}
+
+/// End of what an event begins.
+#[derive(Clone, Debug)]
+pub enum Ends {
+    /// The condition of its begin holds no longer.
+    Opposite,
+    When(Condition),
+    Never,
 }
 
 /// Range and tolerance of a parameter: for programs, without code.
@@ -402,7 +431,16 @@ impl StatementKind {
             StatementKind::Limit { first, second, third, .. } => {
                 [first, second].into_iter().chain(third).collect()
             }
-            StatementKind::Out { kind, value, .. } => kind.shape.iter().chain([value]).collect(),
+            StatementKind::Event { begins, ends, .. } => {
+                let end = match ends {
+                    Ends::When(condition) => Some(condition),
+                    Ends::Opposite | Ends::Never => None,
+                };
+                [begins].into_iter().chain(end).flat_map(|one| [&one.larger, &one.smaller]).collect()
+            }
+            StatementKind::Out { kind, value, .. } | StatementKind::Latch { kind, value, .. } => {
+                kind.shape.iter().chain([value]).collect()
+            }
             StatementKind::Element { fields, .. } => fields
                 .iter()
                 .flat_map(|field| [&field.value].into_iter().chain(index_of(&field.of)))

@@ -13,6 +13,8 @@ impl StatementKind {
             | StatementKind::Let { name, .. }
             | StatementKind::Function { name, .. }
             | StatementKind::Curve { name, .. }
+            | StatementKind::Event { name, .. }
+            | StatementKind::Latch { name, .. }
             | StatementKind::State { name, .. } => ("value", name),
             StatementKind::Faulty { name, declares: Declares::Element, .. } => ("load", name),
             StatementKind::Faulty { declares: Declares::Rows | Declares::Rate, .. } => return None,

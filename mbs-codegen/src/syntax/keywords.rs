@@ -1,7 +1,7 @@
 //! Words that begin a statement; [`super::statement`] calls the reader of each.
 
 /// Words that begin a statement of this version.
-pub const STATEMENTS: [&str; 31] = [
+pub const STATEMENTS: [&str; 33] = [
     "const",
     "param",
     "input",
@@ -14,6 +14,8 @@ pub const STATEMENTS: [&str; 31] = [
     "drive",
     "branch",
     "limit",
+    "event",
+    "latch",
     "independent",
     "out",
     "for",

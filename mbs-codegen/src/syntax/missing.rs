@@ -14,7 +14,7 @@ use super::tokens::{Token, TokenKind};
 use super::unit_symbols::coherent_unit;
 
 /// Words that may follow an expression.
-const BEHIND: [&str; 9] = ["on", "of", "at", "in", "rate", "and", "or", "turned", "near"];
+const BEHIND: [&str; 10] = ["on", "of", "at", "in", "rate", "and", "or", "turned", "near", "until"];
 
 /// `true` if an operand begins where an expression has ended, and no word that may follow one.
 pub fn at_second_operand(parser: &Parser<'_>) -> bool {

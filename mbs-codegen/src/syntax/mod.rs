@@ -9,6 +9,7 @@ mod declaration;
 mod declared_names;
 mod dot_suffix;
 mod dynamics;
+mod event;
 mod expression;
 #[cfg(test)]
 mod expression_tests;

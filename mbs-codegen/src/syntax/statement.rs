@@ -6,6 +6,7 @@ use super::constraint::{equation, read_constraint};
 use super::curve;
 use super::declaration::{read_const, read_coord, read_function, read_input, read_let, read_param};
 use super::dynamics;
+use super::event;
 use super::expression::expression;
 use super::foot::read_foot;
 use super::for_loop::read_loop;
@@ -242,6 +243,8 @@ fn reader(word: &str) -> Option<Reader> {
         "drive" => read_drive,
         "branch" => read_branch,
         "limit" => read_limit,
+        "event" => event::read_event,
+        "latch" => event::read_latch,
         "independent" => read_independent,
         "out" => read_out,
         "for" => |parser| read_loop(parser).map(StatementKind::For),

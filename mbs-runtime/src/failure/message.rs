@@ -259,12 +259,30 @@ impl fmt::Display for Failure {
                  `DormandPrince8`, or a smooth law: `speed` in place of `sticks`, a contact with `stiffness`",
                 friction.name, friction.line
             ),
+            FailureKind::EventOfMotion { event } => write!(
+                f,
+                "event `{}` (line {}) sets values that are known in a motion by an explicit method alone: take one, as `DormandPrince8`, or a \
+                 scene without the event",
+                event.name, event.line
+            ),
             FailureKind::StickingUndecided { friction } => write!(
                 f,
                 "`{}` (line {}) is undecided at t = {time} s: with the forces there a friction can neither stick nor slide, a contact neither \
                  push nor open, or a friction shares a force with others in a ratio that is not known; check coefficients and normal \
                  forces, and leave out frictions along lengths that follow from each other",
                 friction.name, friction.line
+            ),
+            FailureKind::ContactUndecided { contact, modes } => write!(
+                f,
+                "{} of contact `{}` (line {}) with its friction at t = {time} s: friction presses it deeper than its force lifts it \
+                 (Painlevé's paradox); lower its coefficient of friction, or give the contact a `stiffness`",
+                if *modes == 0 {
+                    "no force is consistent with the motion"
+                } else {
+                    "several forces are consistent with the motion"
+                },
+                contact.name,
+                contact.line
             ),
             FailureKind::Penetration { contact, gap } => write!(
                 f,
@@ -275,13 +293,14 @@ impl fmt::Display for Failure {
             FailureKind::ImpactUndecided { contact } => write!(
                 f,
                 "the impact of contact `{}` (line {}) at t = {time} s is undecided: gaps that follow from each other have coefficients of \
-                 restitution that contradict; give them the same one",
+                 restitution that contradict, or friction leaves several ways to go on; give them the same one, or less friction",
                 contact.name, contact.line
             ),
             FailureKind::Chatter { friction, parts } => write!(
                 f,
-                "`{}` (line {}), or another one, changes between sticking and sliding, or closed and open, more than {parts} times within \
-                 the step from t = {time} s: take shorter steps",
+                "`{}` (line {}), or another one, changes between sticking and sliding, closed and open, or begun and ended, more than {parts} \
+                 times within the step from t = {time} s: take shorter steps; give an event another end, `until`, where what it switches \
+                 leads back to its condition",
                 friction.name, friction.line
             ),
             FailureKind::MechanismMismatch { mechanism } => {
@@ -353,7 +372,9 @@ mod tests {
             FailureKind::Ambiguous { row: ROW, solutions: 1, all: false }.at(time),
             FailureKind::SharedNormalForce { row: ROW }.at(time),
             FailureKind::Stiction { friction: ROW }.without_time(),
+            FailureKind::EventOfMotion { event: ROW }.without_time(),
             FailureKind::StickingUndecided { friction: ROW }.at(time),
+            FailureKind::ContactUndecided { contact: ROW, modes: 0 }.at(time),
             FailureKind::Penetration { contact: ROW, gap: -1e-3 }.at(time),
             FailureKind::ImpactUndecided { contact: ROW }.at(time),
             FailureKind::Chatter { friction: ROW, parts: 64 }.at(time),

@@ -205,11 +205,24 @@ pub enum FailureKind {
         /// The friction or contact.
         friction: &'static Entry,
     },
+    /// Values that an event sets are known within a motion by an explicit method alone.
+    EventOfMotion {
+        /// The first event of the text.
+        event: &'static Entry,
+    },
     /// No way of sticking and sliding is consistent with the forces at this time, or frictions along lengths that follow from each other
     /// share a force in a ratio that is not known.
     StickingUndecided {
         /// A friction that may stick or slide, or a contact that may open.
         friction: &'static Entry,
+    },
+    /// No force of a contact with friction is consistent with the motion, or several are (Painlevé's paradox): friction presses the contact
+    /// deeper than its force lifts it.
+    ContactUndecided {
+        /// The contact.
+        contact: &'static Entry,
+        /// Number of modes found, open, sticking or sliding, that are consistent with different accelerations.
+        modes: u32,
     },
     /// The gap of a contact is below zero, where it is open, at a start or after a change; or a motion has missed its touch.
     Penetration {
@@ -219,16 +232,17 @@ pub enum FailureKind {
         gap: f64,
     },
     /// No impulses of the contacts that touch fulfil their laws of impact at this time: gaps follow from each other, and their coefficients
-    /// of restitution contradict.
+    /// of restitution contradict. Or friction on them allows impulses with several outcomes.
     ImpactUndecided {
         /// A contact that closes.
         contact: &'static Entry,
     },
-    /// Frictions stick and slide, or contacts close and open, more often within one step than a step is divided.
+    /// Frictions stick and slide, contacts close and open, or events begin and end, more often within one step than a step is divided, or
+    /// without end at one instant.
     Chatter {
-        /// The first friction with stiction or rigid contact.
+        /// The first friction with stiction, rigid contact or event.
         friction: &'static Entry,
-        /// Parts that the step was divided into.
+        /// Parts that the step was divided into, or changes next to each other.
         parts: u32,
     },
     /// A step that is 0, negative, no number, or too small to change the time.
@@ -403,6 +417,7 @@ impl FailureKind {
             | FailureKind::StatesUnknown { .. }
             | FailureKind::NotSmooth { .. }
             | FailureKind::Stiction { .. }
+            | FailureKind::EventOfMotion { .. }
             | FailureKind::Penetration { .. }
             | FailureKind::MechanismMismatch { .. } => FailureSource::Input,
             FailureKind::NotConverged { .. }
@@ -421,6 +436,7 @@ impl FailureKind {
             | FailureKind::Ambiguous { .. }
             | FailureKind::SharedNormalForce { .. }
             | FailureKind::StickingUndecided { .. }
+            | FailureKind::ContactUndecided { .. }
             | FailureKind::ImpactUndecided { .. }
             | FailureKind::SingularMass { .. } => FailureSource::Forces,
             FailureKind::Unbounded { .. }

@@ -2,6 +2,7 @@
 
 use crate::mechanism::block::BlockSolver;
 use crate::mechanism::enclosure::WithIntervals;
+use crate::mechanism::event::Event;
 use crate::mechanism::limit::Limit;
 use crate::mechanism::margin::Margin;
 use crate::mechanism::normal_forces::WithNormalForces;
@@ -164,6 +165,8 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, 
     const SET_VALUED: &'static [Entry] = &[];
     /// `true` if rigid contacts are among [`SET_VALUED`](Self::SET_VALUED): steps begin with their impacts.
     const HAS_RIGID_CONTACTS: bool = false;
+    /// `true` if frictions on rigid contacts are among [`SET_VALUED`](Self::SET_VALUED).
+    const HAS_FRICTION_ON_CONTACTS: bool = false;
     /// Their modes, sticking or sliding, in the order of [`SET_VALUED`](Self::SET_VALUED). [`force`](Self::force) has the friction of those that
     /// slide and the [`Grip::force`] of those that stick.
     #[inline]
@@ -187,6 +190,36 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, 
         see: V,
     ) -> V::Output {
         see.at::<0>(&[])
+    }
+
+    /// Events, in the order of the text.
+    const EVENTS: &'static [Entry] = &[];
+    /// Indices of the events that latch a value, one a value.
+    const LATCHED_BY: &'static [u16] = &[];
+    /// `true` if what they watch depends on accelerations, multipliers or forces that hold.
+    const EVENTS_USE_ACCELERATIONS: bool = true;
+    /// `true` if a step begins with a decision on modes: of frictions that stick, of rigid contacts, or of events.
+    const HAS_MODES: bool = !(Self::SET_VALUED.is_empty() && Self::EVENTS.is_empty());
+    /// Values that events set: one an event, 1 where it holds and otherwise 0, then one a latched value.
+    #[inline]
+    fn remembered(_parameters: &Self::Parameters) -> &[T] {
+        &[]
+    }
+    /// The same, to be changed.
+    #[inline]
+    fn remembered_mut(_parameters: &mut Self::Parameters) -> &mut [T] {
+        &mut []
+    }
+    /// Shows `see` the conditions of the events, and the values that these would latch now.
+    #[inline]
+    fn events(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _motion: &DynamicState<'_, T, N, M, Self::States>,
+        see: impl FnOnce(&[Event<T>], &[T]),
+    ) {
+        see(&[], &[]);
     }
 
     /// Result of `see` on the mechanism in interval arithmetic, at the present parameters and inputs. `None` where the text calls

@@ -3,6 +3,7 @@
 pub(crate) mod block;
 pub(crate) mod dynamic;
 pub(crate) mod enclosure;
+pub(crate) mod event;
 pub(crate) mod function;
 pub(crate) mod limit;
 pub(crate) mod margin;

@@ -5,7 +5,8 @@ use crate::scalar::number::Scalar;
 /// Mode of a friction with stiction or of a rigid contact: constant within a step, changed at events between steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip<T> {
-    /// Direction in which it slides: 1, −1, or 0 where it sticks. Of a contact 1 where it is open, 0 where it is closed.
+    /// Direction in which it slides: 1, −1, or 0 where it sticks. Of a contact, and of a friction on it, 1 where the contact is open. 0 where
+    /// a contact is closed.
     pub direction: T,
     /// Force (N) along the length with which it sticks, or of the closed contact; 0 while equations are solved for it, and where it
     /// slides or is open.
@@ -41,10 +42,28 @@ pub struct SetValuedRow<T, const N: usize> {
     pub gradient: [T; N],
     /// γ (m/s²).
     pub gamma: T,
-    /// Largest force (N) with which it sticks; 0 of a contact, whose force is any that pushes.
+    /// Largest force (N) with which it sticks; 0 of a contact, whose force is any that pushes, and of a friction on one, where it is
+    /// [`OnContact::sticking`] times that force.
     pub limit: T,
     /// Coefficient of restitution e of a contact, 0 ≤ e ≤ 1; `None` of a friction.
     pub restitution: Option<T>,
+    /// `true` for a contact that strikes by itself, one after the other with those that close at the same time.
+    pub ordered: bool,
+    /// The rigid contact whose force is the normal force of a friction.
+    pub on: Option<OnContact<T>>,
+}
+
+/// Friction on a rigid contact with the force N: −σ μ N along s where it slides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnContact<T> {
+    /// Index of the contact among the rows.
+    pub contact: usize,
+    /// Coefficient μ of impacts.
+    pub coefficient: T,
+    /// Coefficient μ at the present speed.
+    pub sliding: T,
+    /// Coefficient μₛ ≥ μ with which it sticks.
+    pub sticking: T,
 }
 
 impl<T: Scalar, const N: usize> SetValuedRow<T, N> {
@@ -58,6 +77,8 @@ impl<T: Scalar, const N: usize> SetValuedRow<T, N> {
             gamma: zero,
             limit: zero,
             restitution: None,
+            ordered: false,
+            on: None,
         }
     }
 }

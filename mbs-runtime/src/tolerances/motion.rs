@@ -56,3 +56,7 @@ pub(crate) const TOUCHED: Law = Law::fixed(16.0);
 /// Part of a coordinate that its enclosure may be wide by: roundings of its coefficients, sixteen of which are in a rate, and a lever
 /// of the function that is not one.
 pub(crate) const OF_ENCLOSURE: Law = Law::ulps(131_072.0);
+
+/// Time (s) between changes of events, of the run's time or of 1 s where that is more, and motion between them in reference lengths, below
+/// which they follow each other without end: what two located times that differ by rounding show.
+pub(crate) const NEXT_EVENT: Law = Law::root(1.0);

@@ -319,8 +319,8 @@ pub fn study(
         }
         Comparable::Sticks(friction) => {
             return Err(CommandError::Usage(without(format!(
-                "`{friction}` is a friction that sticks or a rigid contact, and no reference solution follows it; compare the smooth \
-                 law: `speed` in place of `sticks`, a contact with `stiffness`"
+                "`{friction}` is a friction that sticks, a rigid contact or an event, and no reference solution follows it; compare \
+                 the smooth law: `speed` in place of `sticks`, a contact with `stiffness`, a scene without the event"
             ))));
         }
         Comparable::Driven(_) if arguments.is_for_forces() => return Err(driven(&target)),

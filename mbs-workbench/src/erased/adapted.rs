@@ -3,7 +3,7 @@
 //! The motion is the same, so a method must find the same one. The elimination that the compiler chose for the text takes no part:
 //! the blocks are not those of the text, and all entries count.
 
-use mbs_runtime::dynamics::{Grip, SetValuedRow, Transformed, WithSetValuedRows};
+use mbs_runtime::dynamics::{Event, Grip, SetValuedRow, Transformed, WithSetValuedRows};
 use mbs_runtime::{
     BlockSolver, Dynamic, DynamicState, Energy, Entry, FunctionEntry, Gap, Limit, Margin, Mechanism,
     MissingSlope, NonNegative, Outcome, Partitioned, Reference, Scalar, StateSlope,
@@ -256,6 +256,11 @@ where
     const CONTACTS: &'static [Entry] = S::CONTACTS;
     const SET_VALUED: &'static [Entry] = S::SET_VALUED;
     const HAS_RIGID_CONTACTS: bool = S::HAS_RIGID_CONTACTS;
+    const EVENTS: &'static [Entry] = S::EVENTS;
+    const LATCHED_BY: &'static [u16] = S::LATCHED_BY;
+    const EVENTS_USE_ACCELERATIONS: bool = S::EVENTS_USE_ACCELERATIONS;
+    const HAS_MODES: bool = S::HAS_MODES;
+    const HAS_FRICTION_ON_CONTACTS: bool = S::HAS_FRICTION_ON_CONTACTS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     fn gaps(
@@ -278,6 +283,12 @@ where
     }
     fn grips_mut(parameters: &mut Self::Parameters) -> &mut [Grip<T>] {
         S::grips_mut(parameters)
+    }
+    fn remembered(parameters: &Self::Parameters) -> &[T] {
+        S::remembered(parameters)
+    }
+    fn remembered_mut(parameters: &mut Self::Parameters) -> &mut [T] {
+        S::remembered_mut(parameters)
     }
     fn set_valued_rows<V: WithSetValuedRows<T, N>>(
         &self,
@@ -462,5 +473,17 @@ where
         let lambda = self.adaption.multipliers(motion.lambda);
         let motion = DynamicState { qd: &qd, qdd: &qdd, lambda: &lambda, states: motion.states };
         self.mechanism.loads(parameters, position, &motion)
+    }
+    fn events(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        motion: &DynamicState<'_, T, N, M, Self::States>,
+        see: impl FnOnce(&[Event<T>], &[T]),
+    ) {
+        let (qd, qdd) = (self.adaption.direction(motion.qd), self.adaption.direction(motion.qdd));
+        let lambda = self.adaption.multipliers(motion.lambda);
+        let motion = DynamicState { qd: &qd, qdd: &qdd, lambda: &lambda, states: motion.states };
+        self.mechanism.events(parameters, position, &motion, see);
     }
 }

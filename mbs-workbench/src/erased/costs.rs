@@ -159,7 +159,7 @@ enum ExactForm {
 
 impl ExactForm {
     fn moved<S: Dynamic<D, N, M> + 'static, const N: usize, const M: usize>(mechanism: S) -> Self {
-        match S::SET_VALUED.first() {
+        match S::SET_VALUED.first().or(S::EVENTS.first()) {
             Some(friction) => ExactForm::Sticks(friction.name),
             None => ExactForm::Moved(Box::new(Exact::<S, N, M>::of(mechanism))),
         }

@@ -1,6 +1,6 @@
 //! A mechanism whose inputs follow courses over the time.
 
-use mbs_runtime::dynamics::{Grip, Transformed, WithNormalForces, WithSetValuedRows};
+use mbs_runtime::dynamics::{Event, Grip, Transformed, WithNormalForces, WithSetValuedRows};
 use mbs_runtime::{
     BlockSolver, Dynamic, DynamicState, Energy, Entry, FunctionEntry, Gap, Kinematic, Limit, Margin,
     Mechanism, MissingSlope, NonNegative, Outcome, Partitioned, Reference, Solved,
@@ -206,6 +206,11 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     const CONTACTS: &'static [Entry] = S::CONTACTS;
     const SET_VALUED: &'static [Entry] = S::SET_VALUED;
     const HAS_RIGID_CONTACTS: bool = S::HAS_RIGID_CONTACTS;
+    const EVENTS: &'static [Entry] = S::EVENTS;
+    const LATCHED_BY: &'static [u16] = S::LATCHED_BY;
+    const EVENTS_USE_ACCELERATIONS: bool = S::EVENTS_USE_ACCELERATIONS;
+    const HAS_MODES: bool = S::HAS_MODES;
+    const HAS_FRICTION_ON_CONTACTS: bool = S::HAS_FRICTION_ON_CONTACTS;
     const NON_NEGATIVE: &'static [NonNegative] = S::NON_NEGATIVE;
 
     // `enclosed` stays `None`: intervals know an input by its value and its rates at the start of a step.
@@ -230,6 +235,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
         fn carried(self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N], qdd: &[f64; N]) -> Option<f64>;
         fn state_rates(self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N], states: &S::States, lambda: &[f64; M]) -> S::States;
         fn state_slopes(self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N], states: &S::States, lambda: &[f64; M]) -> Option<S::StateSlopes>;
+        fn events(self, parameters: &S::Parameters, position: &S::Position, motion: &DynamicState<'_, f64, N, M, S::States>, see: impl FnOnce(&[Event<f64>], &[f64]));
         fn loads(self, parameters: &S::Parameters, position: &S::Position, motion: &DynamicState<'_, f64, N, M, S::States>) -> S::Loads;
     }
 
@@ -244,6 +250,12 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     }
     fn grips_mut(parameters: &mut S::Parameters) -> &mut [Grip<f64>] {
         S::grips_mut(parameters)
+    }
+    fn remembered(parameters: &S::Parameters) -> &[f64] {
+        S::remembered(parameters)
+    }
+    fn remembered_mut(parameters: &mut S::Parameters) -> &mut [f64] {
+        S::remembered_mut(parameters)
     }
     fn set_valued_rows<V: WithSetValuedRows<f64, N>>(
         &self,

@@ -176,7 +176,11 @@ impl MatrixResult {
     /// All verdicts in one sentence.
     pub fn sentence(&self) -> String {
         let counts = [Verdict::Right, Verdict::Late, Verdict::Refused, Verdict::Wrong];
-        let foreseen = self.outcomes.iter().filter(|outcome| outcome.is_expected).count();
+        let foreseen = self
+            .outcomes
+            .iter()
+            .filter(|outcome| outcome.is_expected && outcome.verdict != Verdict::Right)
+            .count();
         let counts = counts.map(|verdict| format!("{} {}", self.count(verdict), verdict.name()));
         let foreseen =
             if foreseen > 0 { format!(" {foreseen} of them were foreseen.") } else { String::new() };

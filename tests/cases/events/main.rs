@@ -14,6 +14,7 @@ mod d3_many;
 mod d3_open_contacts;
 mod d3_spikes;
 mod d4_zero_start;
+mod declared;
 mod runs;
 mod t7_contact_damping;
 mod texts;

@@ -30,6 +30,7 @@ pub fn implementation(
         missing,
         gaps,
         sticking,
+        events,
         limit_rates,
         mass,
         mass_times,
@@ -115,6 +116,7 @@ pub fn implementation(
             #missing
             #gaps
             #sticking
+            #events
             #limit_rates
             #enclosed
             #[inline]

@@ -7,6 +7,7 @@ use quote::{quote, quote_spanned};
 
 use crate::emit::rust::code::{array, block, body, lets, matrix};
 use crate::emit::rust::contacts::{self, Blocks};
+use crate::emit::rust::events;
 use crate::emit::rust::scope::{Scope, number};
 use crate::emit::rust::sticking;
 use crate::equations::deferred::Slopes;
@@ -30,6 +31,8 @@ pub struct DynamicBodies {
     pub gaps: TokenStream,
     /// Not a body: the table of frictions with stiction and the function of their rows, where there are any.
     pub sticking: TokenStream,
+    /// Not a body: the table of events and the function of their conditions, where there are any.
+    pub events: TokenStream,
     /// Not a body: the function of the rates of working ranges, where there are any.
     pub limit_rates: TokenStream,
     pub mass: TokenStream,
@@ -97,6 +100,7 @@ pub fn bodies(
         missing: missing(dynamics, scope.model, runtime),
         gaps: gaps(dynamics, program, scope, runtime),
         sticking: sticking::items(&dynamics.sticking, &program.sticking, scope, runtime),
+        events: events::items(&dynamics.events, &program.events, scope, runtime),
         limit_rates: limit_rates(dynamics, program, scope, runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
         mass_times: of(&program.mass_times, vector(&dynamics.mass_times, scope)),

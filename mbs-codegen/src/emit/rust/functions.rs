@@ -8,6 +8,7 @@ use crate::emit::rust::blocks;
 use crate::emit::rust::code::{array, block, body, lets, matrix, tokens};
 use crate::emit::rust::dynamics::{self, DynamicBodies};
 use crate::emit::rust::elimination::Eliminations;
+use crate::emit::rust::events;
 use crate::emit::rust::jacobian_outputs;
 use crate::emit::rust::lengths::Lengths;
 use crate::emit::rust::linear;
@@ -34,6 +35,8 @@ pub struct Bodies {
     pub contacts: Option<usize>,
     /// Number of frictions with stiction, where there are any.
     pub frictions: Option<usize>,
+    /// Number of values that events set, where there are any.
+    pub remembered: Option<usize>,
     pub kept_position: usize,
     pub parameters: TokenStream,
     pub guess: TokenStream,
@@ -120,7 +123,8 @@ pub fn bodies(
     let scope = Scope { position: Some(&program.position.fields), ..early };
     let is_long = long::is_long(program, lengths);
     let (contacts, frictions) = (dynamics::contacts(equations), dynamics::frictions(equations));
-    let memory = memory(contacts, frictions);
+    let remembered = events::remembered(equations);
+    let memory = memory(contacts, frictions, remembered);
     let mut emitter =
         Emitter { scope: &scope, early: &early, is_long, memory, parts: String::new(), runtime };
     let rows = |part: fn(&crate::equations::Row) -> Option<NodeId>| -> Vec<Option<NodeId>> {
@@ -166,6 +170,7 @@ pub fn bodies(
         kept_parameters: program.parameters.fields.len(),
         contacts,
         frictions,
+        remembered,
         kept_position: program.position.fields.len(),
         orders: orders(model, &demands),
         parameters: emitter.parameters(&program.parameters, smooth_enough(&demands, &bare), &bare),
@@ -315,16 +320,18 @@ fn kept_values(stage: &Stage, scope: &Scope<'_>) -> String {
     array(stage.fields.keys().map(|id| Some(*id)), scope)
 }
 
-/// By default the forces of all contacts are evaluated, and how frictions stick and slide is not known.
-fn memory(contacts: Option<usize>, frictions: Option<usize>) -> String {
-    let closed = |contacts: usize| format!(", [true; {contacts}]");
-    match (contacts, frictions) {
-        (None, None) => String::new(),
-        (Some(contacts), None) => closed(contacts),
-        (contacts, Some(frictions)) => {
-            closed(contacts.unwrap_or(0)) + &format!(", [__mbs::dynamics::Grip::new(); {frictions}]")
-        }
+/// By default the forces of all contacts are evaluated; how frictions stick and slide is not known, and no event holds.
+fn memory(contacts: Option<usize>, frictions: Option<usize>, remembered: Option<usize>) -> String {
+    let frictions = frictions.or(remembered.map(|_| 0));
+    let contacts = contacts.or(frictions.map(|_| 0));
+    let mut text = contacts.map_or(String::new(), |contacts| format!(", [true; {contacts}]"));
+    if let Some(frictions) = frictions {
+        text += &format!(", [__mbs::dynamics::Grip::new(); {frictions}]");
     }
+    if let Some(remembered) = remembered {
+        text += &format!(", [{}; {remembered}]", number(0.0));
+    }
+    text
 }
 
 fn frame(declared: &str, given: &str) -> ExtraArguments {

@@ -7,6 +7,7 @@ pub(crate) mod docs;
 mod dynamic_trait;
 mod dynamics;
 mod elimination;
+mod events;
 mod fields;
 mod functions;
 mod generics;

@@ -10,6 +10,8 @@ use crate::syntax::rust_identifiers::is_keyword;
 
 /// Field of the parameter stage that holds how friction sticks and slides.
 const GRIPS: &str = "__p.2";
+/// Values that events set, in the parameters.
+const REMEMBERED: &str = "__p.3";
 
 /// Values and names available within a function.
 pub struct Scope<'a> {
@@ -120,6 +122,7 @@ impl Scope<'_> {
             Node::Leaf(Leaf::Direction(index)) => format!("__x[{index}]"),
             Node::Leaf(Leaf::Sliding(index)) => format!("{GRIPS}[{index}].direction"),
             Node::Leaf(Leaf::Holding(index)) => format!("{GRIPS}[{index}].force"),
+            Node::Leaf(Leaf::Remembered(index)) => format!("{REMEMBERED}[{index}]"),
             Node::Leaf(Leaf::Given(MARGIN, group)) => format!("__margin{group}"),
             Node::Leaf(Leaf::Given(row, index)) => format!("__gain{row}[{index}]"),
             _ => number(f64::NAN),

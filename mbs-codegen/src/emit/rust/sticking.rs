@@ -29,15 +29,25 @@ pub fn items(
     let mut text = String::new();
     lets(section, scope, &mut text);
     let _ = writeln!(text, "let mut __rows = [__mbs::dynamics::SetValuedRow::<T, {n}>::new(); {k}];");
-    for (index, Sticking { place, rate, gradient, gamma, limit, restitution }) in sticking.iter().enumerate()
-    {
-        let some = |id| format!("::core::option::Option::Some({})", scope.operand(id));
+    for (index, row) in sticking.iter().enumerate() {
+        let Sticking { place, rate, gradient, gamma, limit, restitution, ordered, on } = row;
+        let some = |value| format!("::core::option::Option::Some({value})");
+        let on = on.map(|on| {
+            let [coefficient, sliding, sticking] =
+                [on.coefficient, on.sliding, on.sticking].map(|id| scope.operand(id));
+            format!(
+                "__mbs::dynamics::OnContact {{ contact: {}, coefficient: {coefficient}, sliding: {sliding}, sticking: {sticking} }}",
+                on.contact
+            )
+        });
         let fields = [
             ("place", Some(scope.operand(*place))),
             ("rate", Some(scope.or_zero(*rate))),
             ("gamma", Some(scope.or_zero(*gamma))),
             ("limit", limit.map(|limit| scope.operand(limit))),
-            ("restitution", restitution.map(some)),
+            ("restitution", restitution.map(|id| some(scope.operand(id)))),
+            ("ordered", ordered.then(|| "true".into())),
+            ("on", on.map(some)),
         ];
         for (field, value) in fields.into_iter().filter_map(|(field, value)| Some((field, value?))) {
             let _ = writeln!(text, "__rows[{index}].{field} = {value};");
@@ -50,9 +60,12 @@ pub fn items(
     let body = block(&text, runtime);
     let rigid = sticking.iter().any(|row| row.restitution.is_some());
     let rigid = rigid.then(|| quote! { const HAS_RIGID_CONTACTS: bool = true; });
+    let rubs = sticking.iter().any(|row| row.on.is_some());
+    let rubs = rubs.then(|| quote! { const HAS_FRICTION_ON_CONTACTS: bool = true; });
     quote! {
         const SET_VALUED: &'static [#runtime::Entry] = &[#(#entries),*];
         #rigid
+        #rubs
         #[inline]
         fn grips(__p: &__Parameters<T>) -> &[#runtime::dynamics::Grip<T>] {
             &__p.2

@@ -57,6 +57,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     quiet: R,
     /// `true` if steps end where contacts close or open.
     locates: bool,
+    /// Last time (s) at which events changed, and how often they did so next to each other.
+    pub(super) changed: (R, u32),
     /// Energy (J) that impacts have brought in: none, or less.
     pub(crate) gained: R,
     pub(crate) counts: Counts,
@@ -72,8 +74,8 @@ where
     F: Formulation<S, R, N, M>,
     R: Real,
 {
-    /// `true` if a text has contacts, or frictions with stiction.
-    const MAY_CHANGE: bool = !(S::CONTACTS.is_empty() && S::SET_VALUED.is_empty());
+    /// `true` if a text has contacts, frictions with stiction, or events.
+    const MAY_CHANGE: bool = !S::CONTACTS.is_empty() || S::HAS_MODES;
 
     /// Those of a motion that continues `from`.
     pub(crate) fn new(
@@ -103,6 +105,7 @@ where
             parameters: Self::MAY_CHANGE.then_some(*model.parameters),
             quiet: start,
             locates: true,
+            changed: (start, 0),
             gained: R::constant(0.0),
             counts,
         }
@@ -409,9 +412,8 @@ where
             self.quiet = open.until;
             changes = open.changes;
         }
-        if const { !S::SET_VALUED.is_empty() } {
-            changes |= self.strike(t, y)?;
-            changes |= self.decide(t, y, changes)?;
+        if const { S::HAS_MODES } {
+            changes = self.settle_modes(t, y, changes)?;
         }
         Ok(changes)
     }
@@ -419,7 +421,7 @@ where
     #[inline(always)]
     fn may_kink(&mut self, to: R) -> bool {
         let is_quiet = S::CONTACTS.is_empty() || to <= self.quiet || !self.locates;
-        Self::MAY_KINK && (!S::SET_VALUED.is_empty() || !is_quiet)
+        Self::MAY_KINK && (S::HAS_MODES || !is_quiet)
     }
 
     fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
@@ -431,8 +433,8 @@ where
             first = self.model.contact_change((self.start, evaluated), (start, end), at, &self.scrutiny)?;
             end = first.unwrap_or(end);
         }
-        if const { !S::SET_VALUED.is_empty() } && !self.model.first_order {
-            return Ok(self.slip(step, (start, end))?.or(first));
+        if const { S::HAS_MODES } && !self.model.first_order {
+            return self.change_of_modes(step, (start, end), first);
         }
         Ok(first)
     }

@@ -28,9 +28,38 @@ where
         self.parameters
     }
 
+    /// Impacts, events and modes of frictions where a step begins, in this order; `true` if anything changes. `anew`: contacts have changed.
+    pub(super) fn settle_modes(
+        &mut self,
+        t: R,
+        y: &mut Moving<S, R, N, M>,
+        anew: bool,
+    ) -> Result<bool, Failure> {
+        let struck = anew | self.strike(t, y)?;
+        let switched = struck | self.switch(t, y, struck)?;
+        Ok(switched | self.decide(t, y, switched)?)
+    }
+
+    /// The first time (s) of a step, before `first` where that is known, at which an event begins or ends or a friction changes its mode.
+    pub(super) fn change_of_modes(
+        &mut self,
+        step: &impl Dense<R, State = Moving<S, R, N, M>>,
+        (start, end): (R, R),
+        first: Option<R>,
+    ) -> Result<Option<R>, Failure> {
+        let mut first = first;
+        if const { !S::EVENTS.is_empty() } {
+            first = self.event(step, (start, end))?.or(first);
+        }
+        if const { S::SET_VALUED.is_empty() } {
+            return Ok(first);
+        }
+        Ok(self.slip(step, (start, first.unwrap_or(end)))?.or(first))
+    }
+
     /// The impacts of contacts that close at `y`; `true` if there are any.
     #[inline(never)]
-    pub(super) fn strike(&mut self, t: R, y: &mut Moving<S, R, N, M>) -> Result<bool, Failure> {
+    fn strike(&mut self, t: R, y: &mut Moving<S, R, N, M>) -> Result<bool, Failure> {
         if const { !S::HAS_RIGID_CONTACTS } || self.model.first_order {
             return Ok(false);
         }
@@ -47,8 +76,8 @@ where
     /// Modes of the frictions from `y` on; `true` if they change. `anew`: contacts have changed, so that the last rates do not count. The
     /// parts of a step of fixed size keep its modes.
     #[inline(never)]
-    pub(super) fn decide(&mut self, t: R, y: &Moving<S, R, N, M>, anew: bool) -> Result<bool, Failure> {
-        if self.model.first_order {
+    fn decide(&mut self, t: R, y: &Moving<S, R, N, M>, anew: bool) -> Result<bool, Failure> {
+        if const { S::SET_VALUED.is_empty() } || self.model.first_order {
             return Ok(false);
         }
         let rate = if anew { Some(self.solve(t, y)?) } else { None };
@@ -67,7 +96,7 @@ where
 
     /// The first time (s) of a step at which a friction changes its mode.
     #[inline(never)]
-    pub(super) fn slip(
+    fn slip(
         &mut self,
         step: &impl Dense<R, State = Moving<S, R, N, M>>,
         times: (R, R),

@@ -2,6 +2,7 @@
 
 pub(crate) mod crossing;
 pub(crate) mod equations;
+pub(crate) mod events;
 pub(crate) mod explicit;
 pub(crate) mod grips;
 pub(crate) mod phases;

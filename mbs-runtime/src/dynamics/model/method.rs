@@ -11,21 +11,24 @@ use crate::scalar::number::Real;
 /// Fails where a text has functions that are not smooth enough for a [`Tangent`].
 ///
 /// # Errors
-/// [`FailureKind::NotSmooth`].
+/// [`FailureKind::NotSmooth`], [`FailureKind::Stiction`], [`FailureKind::EventOfMotion`].
 pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
     require_no_stiction::<S, R, N, M>()?;
     S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
 }
 
-/// Fails where a text has friction with stiction: outside a motion that knows whether it sticks or slides.
+/// Fails where a text has friction with stiction or events: outside a motion that knows whether it sticks or slides, and what has begun.
 ///
 /// # Errors
-/// [`FailureKind::Stiction`].
+/// [`FailureKind::Stiction`], [`FailureKind::EventOfMotion`].
 pub(crate) fn require_no_stiction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
-    let first = S::SET_VALUED.first();
-    first.map_or(Ok(()), |friction| Err(FailureKind::Stiction { friction }.without_time()))
+    match (S::SET_VALUED.first(), S::EVENTS.first()) {
+        (Some(friction), _) => Err(FailureKind::Stiction { friction }.without_time()),
+        (None, Some(event)) => Err(FailureKind::EventOfMotion { event }.without_time()),
+        (None, None) => Ok(()),
+    }
 }
 
 /// [`require_slopes`] of a position of rest: ∂Q/∂q̇ has no part in it.

@@ -1,5 +1,6 @@
 //! Model of a mechanism for the methods: with its stage-0 values and its metric.
 
+pub(crate) mod events;
 pub(crate) mod forward;
 pub(crate) mod instant;
 pub(crate) mod method;
@@ -183,8 +184,7 @@ pub enum MethodWarning {
     StiffStabilization,
     /// Baumgarte's frequency times the duration is below 5: the stabilisation does nothing.
     IdleStabilization,
-    /// Rows that follow from others on the constraints do not off them, where the method takes accelerations: those grow
-    /// with the inverse of the distance.
+    /// Rows follow from others on the constraints alone: accelerations off them grow with the inverse of the distance.
     RisingRank,
 }
 

@@ -15,7 +15,7 @@ use crate::tolerances::motion;
 
 /// A step of fixed size that is not taken yet.
 pub(super) struct Ahead<R, P, const N: usize, const M: usize, Z> {
-    from: Fresh<R, N, M, Z>,
+    pub(super) from: Fresh<R, N, M, Z>,
     pub(super) next: Instant<R, N, M, Z>,
     phases: Option<P>,
     pub(super) counts: Counts,
@@ -101,7 +101,7 @@ where
 
     /// A step of `h` (s), as it is.
     fn stepped(&mut self, h: R) -> Result<(), Failure> {
-        if const { !S::SET_VALUED.is_empty() } {
+        if const { S::HAS_MODES } {
             return self.step_in_parts(self.now.t + h);
         }
         if const { !S::CONTACTS.is_empty() } {
@@ -245,6 +245,10 @@ where
         }
         let least = motion::LEAST_STEP.of::<R>() * start.abs().max(end.abs());
         // A step into a contact says nothing of speeds: its curve has the end's acceleration. The one up to the contact does.
+        if const { !S::EVENTS.is_empty() } && kink.is_none_or(|kink| !least.less(end - kink)) {
+            let model = Model { parameters, ..model };
+            kink = self.event(&model, ahead, kink.unwrap_or(end))?.or(kink);
+        }
         if const { !S::SET_VALUED.is_empty() } && kink.is_none_or(|kink| !least.less(end - kink)) {
             let model = Model { parameters, ..model };
             kink = self.slip(&model, ahead, kink.unwrap_or(end))?.or(kink);
@@ -280,7 +284,7 @@ where
     /// A step of `h` (s), or up to where a contact closes or opens. Nothing after that is judged.
     pub(super) fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
         let over = S::CONTACTS.is_empty() || self.contact_steps == ContactSteps::Unlocated;
-        if S::SET_VALUED.is_empty() && over {
+        if !S::HAS_MODES && over {
             return self.ahead(h, self.counts, false);
         }
         let mut trial = self.trial_with_contacts(h, self.counts)?;
@@ -342,7 +346,7 @@ where
             self.require_parts(part)?;
             self.grip()?;
             let rest = until - self.now.t;
-            let ahead = match part < most || !S::SET_VALUED.is_empty() {
+            let ahead = match part < most || S::HAS_MODES {
                 true => self.ahead_to_kink(self.part_of(whole, rest))?,
                 false => self.ahead(rest, self.counts, false)?,
             };

@@ -76,7 +76,7 @@ where
                 self.require_parts(part)?;
                 self.grip()?;
                 let rest = end - self.now.t;
-                let to_kink = part < most || !S::SET_VALUED.is_empty();
+                let to_kink = part < most || S::HAS_MODES;
                 let whole = match to_kink {
                     true => self.ahead_to_kink(self.part_of(length, rest))?,
                     false => self.ahead(rest, self.counts, false)?,

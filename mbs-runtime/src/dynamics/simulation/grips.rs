@@ -5,7 +5,7 @@ use crate::dynamics::formulations::set_valued::impact::Struck;
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::method::Method;
 use crate::dynamics::model::{Counts, Formulation, Model};
-use crate::dynamics::simulation::Simulation;
+use crate::dynamics::simulation::{Simulation, events};
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
@@ -42,13 +42,13 @@ where
 {
     /// Number of parts that frictions cut a step of fixed size into at most; 0 of a text without.
     pub(super) fn most_slips() -> u32 {
-        let count = u32::try_from(S::SET_VALUED.len()).unwrap_or(u32::MAX);
+        let count = u32::try_from(S::SET_VALUED.len() + S::EVENTS.len()).unwrap_or(u32::MAX);
         if count == 0 { 0 } else { count.saturating_mul(PARTS_OF_A_FRICTION).max(LEAST_PARTS) }
     }
 
     /// Modes where parameters or inputs have changed.
     pub(super) fn grip_anew(&mut self) -> Result<(), Failure> {
-        if const { S::SET_VALUED.is_empty() } || !self.stale {
+        if const { !S::HAS_MODES } || !self.stale {
             return Ok(());
         }
         if let Some(failure) = self.fault {
@@ -57,6 +57,8 @@ where
         let (t, mut y, mut counts) = (self.now.t, self.now.y, self.counts);
         let model = self.model();
         Projection::default().project(&model, t, &mut y, &mut counts)?;
+        let parameters = events::anew(&self.method, &model, (t, &y), (&mut counts, false))?;
+        let model = Model { parameters: &parameters, ..model };
         let parameters = anew(&self.method, &model, (t, &y), &mut counts)?;
         (self.parameters, self.counts) = (parameters, counts);
         Ok(())
@@ -64,7 +66,7 @@ where
 
     /// Takes the modes of the last step.
     pub(super) fn take_grips(&mut self, parameters: Option<&S::Parameters>) {
-        if const { !S::SET_VALUED.is_empty() }
+        if const { S::HAS_MODES }
             && let Some(parameters) = parameters
         {
             self.parameters = Model { parameters, ..self.model() }.gripping(self.parameters);
@@ -73,7 +75,7 @@ where
 
     /// Modes from the present instant on.
     pub(super) fn grip(&mut self) -> Result<(), Failure> {
-        if const { S::SET_VALUED.is_empty() } {
+        if const { !S::HAS_MODES } {
             return Ok(());
         }
         self.grip_anew()?;
@@ -81,6 +83,10 @@ where
             return Ok(());
         }
         self.strike()?;
+        self.switch()?;
+        if const { S::SET_VALUED.is_empty() } {
+            return Ok(());
+        }
         let (t, y, solved, mut counts) = (self.now.t, self.now.y, self.now.solved, self.counts);
         let (method, model) = (&self.method, self.model());
         let decided = model.decide(t, &y, Some(&solved), &mut |model| {
@@ -115,7 +121,7 @@ where
 
     /// Fails where the last part of a step would go over changes of modes.
     pub(super) fn require_parts(&self, part: u32) -> Result<(), Failure> {
-        match S::SET_VALUED.first() {
+        match S::SET_VALUED.first().or(S::EVENTS.first()) {
             Some(friction) if Self::most_slips() <= part => {
                 Err(FailureKind::Chatter { friction, parts: part }.at(self.now.t.to_f64()))
             }

@@ -6,6 +6,7 @@ mod accuracy_tests;
 pub(crate) mod adaptive_run;
 pub(crate) mod checks;
 pub(crate) mod contact;
+pub(crate) mod events;
 pub(crate) mod fixed_run;
 pub(crate) mod fixed_run_events;
 pub(crate) mod graded_steps;
@@ -218,6 +219,8 @@ where
         model.metric = &metric;
         Projection::default().project(&model, t, &mut y, &mut counts)?;
         model.rank_rises = rank_rises(&model, t, &y);
+        let parameters = events::anew(&method, &model, (t, &y), (&mut counts, true))?;
+        let model = Model { parameters: &parameters, ..model };
         let mut parameters = grips::anew(&method, &model, (t, &y), &mut counts)?;
         S::grips_mut(&mut parameters).iter_mut().for_each(|grip| grip.since = t);
         let model = Model { parameters: &parameters, ..model };

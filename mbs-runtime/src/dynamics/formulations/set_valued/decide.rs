@@ -8,18 +8,24 @@
 //! Source: Pfeiffer & Glocker 1996, Multibody Dynamics with Unilateral Contacts, ch. 5; Murty 1974 for the order of pivots.
 
 use crate::dynamics::formulations::projection::correction_factors;
-use crate::dynamics::formulations::set_valued::{Shares, no_gap, no_rate, size, sticks};
+use crate::dynamics::formulations::set_valued::modes::{codes, follow, of_contact, set_modes};
+use crate::dynamics::formulations::set_valued::shares::Shares;
+use crate::dynamics::formulations::set_valued::{is_off, limit, no_gap, no_rate, size, sticks};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::linear_algebra::vectors::dot;
+use crate::mechanism::Entry;
 use crate::mechanism::dynamic::Dynamic;
-use crate::mechanism::set_valued::{Grip, SetValuedRow, WithSetValuedRows};
+use crate::mechanism::set_valued::{Grip, OnContact, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
 use crate::tolerances::{motion, set_valued};
 
 /// Rows at rest of which all modes are tried.
 const MOST_ENUMERATED: usize = 4;
+
+/// The same with frictions on contacts: three of these have 64 modes.
+const MOST_WITH_CONTACTS: usize = 6;
 
 /// Pivots a row: one is usual.
 const PIVOTS_OF_A_ROW: usize = 4;
@@ -106,11 +112,14 @@ where
         }
         let rest = self.at_rest(rows);
         let mut trial = *self.model.parameters;
+        let is_off = |row: &SetValuedRow<R, N>| row.on.is_some_and(|on| rest.get(on.contact) != Some(&true));
         for ((grip, row), rest) in S::grips_mut(&mut trial).iter_mut().zip(rows).zip(&rest) {
             if row.restitution.is_some() {
                 let closes = *rest && !sticks(grip);
                 (grip.place, grip.since) = (zero, if closes { self.t } else { grip.since });
                 grip.direction = if *rest { zero } else { R::constant(1.0) };
+            } else if is_off(row) {
+                (grip.place, grip.direction) = (zero, R::constant(1.0));
             } else if !rest {
                 grip.direction = row.rate.sign();
             } else if !sticks(grip) || self.known.is_none() {
@@ -123,10 +132,13 @@ where
             }
         }
         let mut decided = self.pivots(rows, &rest, &mut trial)?;
+        if const { S::HAS_FRICTION_ON_CONTACTS } {
+            self.require_unique(rows, &rest, &trial, &decided)?;
+        }
         for round in 0..=K {
             let Some(index) = self.held_by_others(rows, &rest, &trial, &decided)? else { break };
             if round == K {
-                let friction = checks::entry(S::SET_VALUED, u16::try_from(index).unwrap_or(u16::MAX));
+                let friction = row::<S, R, N, M>(index);
                 return Err(FailureKind::StickingUndecided { friction }.at(self.t.to_f64()));
             }
             // It slipped before the row that moves: with that one sliding it may hold.
@@ -145,20 +157,31 @@ where
     R: Real,
     F: FnMut(&Model<'_, S, R, N, M>) -> Result<Solved<R, N, M, S::States>, Failure>,
 {
+    const MOST: usize = if S::HAS_FRICTION_ON_CONTACTS { MOST_WITH_CONTACTS } else { MOST_ENUMERATED };
+
     /// Rows at zero speed: those that stick, those whose sliding has ended, and at a new start those without speed.
     fn at_rest<const K: usize>(&self, rows: &[SetValuedRow<R, N>; K]) -> [bool; K] {
         let (zero, mut rest) = (R::constant(0.0), [false; K]);
+        let grips = S::grips(self.model.parameters);
         let resolution = R::constant(ROUNDINGS_OF_AN_EVENT) * motion::LEAST_STEP.of() * self.t.abs();
-        for ((rest, row), grip) in rest.iter_mut().zip(rows).zip(S::grips(self.model.parameters)) {
+        for ((rest, row), grip) in rest.iter_mut().zip(rows).zip(grips) {
             let change = self.known.map_or(zero, |known| dot(&row.gradient, &known.rate.qd) - row.gamma);
             let none = no_rate(row, &self.y.qd, self.model.metric) + resolution * change.abs();
             let touches = || row.place <= no_gap(row, &self.y.q, self.model.metric);
             *rest = match self.known {
+                // A friction on an open contact has no direction.
+                Some(_) if is_off(row, grips) => row.rate.abs() <= none,
                 Some(_) if row.restitution.is_some() => sticks(grip) || touches() && row.rate <= none,
                 None if row.restitution.is_some() => touches() && row.rate.abs() <= none,
                 Some(_) => sticks(grip) || grip.direction * row.rate <= none,
                 None => row.rate.abs() <= none,
             };
+        }
+        if const { S::HAS_FRICTION_ON_CONTACTS } {
+            let contacts = rest;
+            for (rest, row) in rest.iter_mut().zip(rows) {
+                *rest = *rest && row.on.is_none_or(|on| contacts.get(on.contact) == Some(&true));
+            }
         }
         rest
     }
@@ -207,13 +230,18 @@ where
                     _ => R::constant(0.0),
                 };
             }
+            if const { S::HAS_FRICTION_ON_CONTACTS } {
+                follow::<S, R, N, M, K>(rows, rest, trial, Some(wrong));
+            }
         }
         if let Some(solved) = self.enumerate(rows, rest, trial) {
             return Ok(solved);
         }
-        let friction = checks::entry(S::SET_VALUED, u16::try_from(wrong).unwrap_or(u16::MAX));
-        let undecided = FailureKind::StickingUndecided { friction }.at(self.t.to_f64());
-        Err(failed.unwrap_or(undecided))
+        let undecided = match of_contact(rows, wrong) {
+            Some(contact) => FailureKind::ContactUndecided { contact: row::<S, R, N, M>(contact), modes: 0 },
+            None => FailureKind::StickingUndecided { friction: row::<S, R, N, M>(wrong) },
+        };
+        Err(failed.unwrap_or(undecided.at(self.t.to_f64())))
     }
 
     /// All modes of a few rows, those with the fewest sliding rows first.
@@ -226,33 +254,74 @@ where
         trial: &mut S::Parameters,
     ) -> Option<Solved<R, N, M, S::States>> {
         let count = rest.iter().filter(|rest| **rest).count();
-        if count > MOST_ENUMERATED {
+        if count > Self::MOST {
             return None;
         }
-        let codes = (0..count).fold(1_u32, |codes, _| codes.saturating_mul(3));
         for sliding in 0..=count {
-            for code in 0..codes {
-                let (mut left, mut slides) = (code, 0);
-                for (grip, _) in S::grips_mut(trial).iter_mut().zip(rest).filter(|(_, rest)| **rest) {
-                    grip.direction =
-                        R::constant([0.0, 1.0, -1.0].get((left % 3) as usize).copied().unwrap_or(0.0));
-                    slides += usize::from(!sticks(grip));
-                    left /= 3;
-                }
-                let behind = |(row, grip): (&SetValuedRow<R, N>, &Grip<R>)| {
-                    row.restitution.is_some() && grip.direction < R::constant(0.0)
-                };
-                if slides != sliding || rows.iter().zip(S::grips(trial)).any(behind) {
+            for code in 0..codes(count) {
+                if set_modes::<S, R, N, M, K>(rows, rest, code, trial) != Some(sliding) {
                     continue;
                 }
                 let Ok(solved) = self.rates(trial) else { continue };
-                let verdicts = self.verdicts(rows, rest, trial, &solved);
-                if verdicts.iter().all(|verdict| *verdict == Verdict::Consistent) {
+                if self.is_consistent(rows, rest, trial, &solved) {
                     return Some(solved);
                 }
             }
         }
         None
+    }
+
+    /// Fails where the contacts of another mode of a few rows are consistent too, with other accelerations.
+    ///
+    /// # Errors
+    /// [`FailureKind::ContactUndecided`].
+    fn require_unique<const K: usize>(
+        &mut self,
+        rows: &[SetValuedRow<R, N>; K],
+        rest: &[bool; K],
+        trial: &S::Parameters,
+        solved: &Solved<R, N, M, S::States>,
+    ) -> Result<(), Failure> {
+        let count = rest.iter().filter(|rest| **rest).count();
+        if count > Self::MOST || self.model.has_one_mode(self.t, self.position, rows, rest, trial) {
+            return Ok(());
+        }
+        let (mut other, mut modes, mut contact) = (*trial, 1, None);
+        for code in 0..codes(count) {
+            if set_modes::<S, R, N, M, K>(rows, rest, code, &mut other).is_none() {
+                continue;
+            }
+            let pairs = rows.iter().zip(S::grips(&other).iter().zip(S::grips(trial)));
+            let differs = |(row, (one, other)): (&SetValuedRow<R, N>, (&Grip<R>, &Grip<R>))| {
+                row.restitution.is_some() && sticks(one) != sticks(other)
+            };
+            let Some(index) = pairs.enumerate().find(|(_, pair)| differs(*pair)).map(|(index, _)| index)
+            else {
+                continue;
+            };
+            let Ok(found) = self.rates(&other) else { continue };
+            let apart = |(one, other): (&R, &R)| {
+                let rounding = set_valued::CONTRADICTED.of::<R>() * (one.abs() + other.abs());
+                rounding < (*one - *other).abs()
+            };
+            let moves = found.rate.qd.iter().zip(&solved.rate.qd).any(apart);
+            if moves && self.is_consistent(rows, rest, &other, &found) {
+                (modes, contact) = (modes + 1, contact.or(Some(index)));
+            }
+        }
+        let Some(contact) = contact else { return Ok(()) };
+        let contact = row::<S, R, N, M>(contact);
+        Err(FailureKind::ContactUndecided { contact, modes }.at(self.t.to_f64()))
+    }
+
+    fn is_consistent<const K: usize>(
+        &self,
+        rows: &[SetValuedRow<R, N>; K],
+        rest: &[bool; K],
+        trial: &S::Parameters,
+        solved: &Solved<R, N, M, S::States>,
+    ) -> bool {
+        self.verdicts(rows, rest, trial, solved).iter().all(|verdict| *verdict == Verdict::Consistent)
     }
 
     fn verdicts<const K: usize>(
@@ -271,12 +340,18 @@ where
         model.mechanism.set_valued_rows(trial, self.position, &y.qd, &y.states, lambda, copied);
         let mut verdicts = [Verdict::Consistent; K];
         let grips = S::grips(&held).iter().zip(rest);
+        let all = S::grips(&held);
         for ((verdict, row), (grip, _)) in
             verdicts.iter_mut().zip(&present).zip(grips).filter(|(_, (_, rest))| **rest)
         {
+            // Of a contact that pulls nothing else counts: it opens first.
+            let pulls = |on: OnContact<R>| all.get(on.contact).is_none_or(|contact| contact.force <= zero);
+            if row.on.is_some_and(pulls) {
+                continue;
+            }
             let acceleration = dot(&row.gradient, qdd) - row.gamma;
             let terms = size(&row.gradient, qdd, acceleration) + row.gamma.abs();
-            let (force, limit) = (grip.force.abs(), row.limit);
+            let (force, limit) = (grip.force.abs(), limit(row, all));
             // Accelerations that are none are roundings of those that the friction's forces make.
             let exceeds = |acceleration: R, share: R| {
                 share * terms < acceleration && {
@@ -320,6 +395,13 @@ where
         solved: &Solved<R, N, M, S::States>,
     ) -> Result<Option<usize>, Failure> {
         let (zero, qdd, grips) = (R::constant(0.0), &solved.rate.qd, S::grips(trial));
+        let held = if const { S::HAS_FRICTION_ON_CONTACTS } {
+            let model = Model { parameters: trial, ..*self.model };
+            model.with_grip_forces(self.position, self.y, (qdd, &solved.lambda))
+        } else {
+            *trial
+        };
+        let forces = S::grips(&held);
         let mut holds = [false; K];
         holds.iter_mut().zip(grips).for_each(|(holds, grip)| *holds = sticks(grip));
         for (index, ((row, grip), _)) in
@@ -330,8 +412,9 @@ where
             let still = |made: R| acceleration.abs() <= set_valued::CONTRADICTED.of::<R>() * (terms + made);
             if row.restitution.is_some()
                 || sticks(grip)
+                || is_off(row, grips)
                 || !holds.contains(&true)
-                || !still(row.limit * self.softness(&row.gradient))
+                || !still(limit(row, forces) * self.softness(&row.gradient))
             {
                 continue;
             }
@@ -358,4 +441,9 @@ where
             dot(gradient, &factors.solve(gradient, &[R::constant(0.0); M]).0).abs()
         })
     }
+}
+
+/// The row at `index` among the set-valued forces.
+fn row<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(index: usize) -> &'static Entry {
+    checks::entry(S::SET_VALUED, u16::try_from(index).unwrap_or(u16::MAX))
 }

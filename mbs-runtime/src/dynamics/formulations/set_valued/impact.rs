@@ -2,7 +2,8 @@
 //!
 //! Impulses P of all contacts that touch and do not separate solve the complementarity problem 0 ≤ P ⊥ v⁺ + e v⁻ ≥ 0 with v⁺ = v⁻ + W P
 //! (Newton's law for each, Moreau's for several at once). It is the least of ½ Pᵀ W P + bᵀ P over P ≥ 0, found by changes of its active
-//! set. A contact that separates beforehand takes part as soon as others have made it approach. So no impact brings in energy.
+//! set. With friction there are more modes. A contact that separates beforehand takes part as soon as others have made it approach. So no
+//! impact brings in energy.
 //!
 //! Flights that follow each other ever faster end at one time. Contacts that rise by rounding alone before they fall back are closed at
 //! once; the time that their bounces would still take, a geometric series with the ratio e, is added to the time of closing.
@@ -10,7 +11,9 @@
 
 use crate::dynamics::formulations::projection::{Projection, correction_factors};
 use crate::dynamics::formulations::set_valued::decide::Rows;
-use crate::dynamics::formulations::set_valued::{Shares, no_gap, no_rate, of_gap, sticks};
+use crate::dynamics::formulations::set_valued::impulses::{Impact, impulses};
+use crate::dynamics::formulations::set_valued::shares::Shares;
+use crate::dynamics::formulations::set_valued::{is_off, no_gap, no_rate, of_gap, sticks};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
@@ -23,9 +26,6 @@ use crate::tolerances::set_valued;
 
 /// Impacts one after the other at one time, a contact; with more they count as infinitely many, and the last one is plastic.
 const MOST_IMPACTS: usize = 64;
-
-/// Changes of the active set, a contact: one or two are usual.
-const MOST_CHANGES: usize = 16;
 
 /// A state after its impacts.
 pub(crate) struct Struck<Y, P, R> {
@@ -136,8 +136,7 @@ where
         if !strikes {
             return Ok(None);
         }
-        let (mut next, parameters) = self.closed(&touching)?;
-        let closed = Model { parameters: &parameters, ..*model };
+        let (mut next, parameters) = self.closed(rows, &touching)?;
         let position = model.position(self.t, &next);
         let kinetic = |qd: &[R; N]| model.mechanism.energy(&parameters, &position, qd).kinetic;
         let before = kinetic(&next.qd);
@@ -151,7 +150,7 @@ where
         let factors = correction_factors(model, self.t, &position)?;
         let mut answers = [[zero; N]; K];
         for ((answer, row), _) in
-            answers.iter_mut().zip(&present).zip(&touching).filter(|(_, touches)| **touches)
+            answers.iter_mut().zip(&present).zip(&rubbing(rows, &touching)).filter(|(_, acts)| **acts)
         {
             *answer = factors.solve(&row.gradient, &[zero; M]).0;
         }
@@ -159,21 +158,39 @@ where
         let entry = |row: &SetValuedRow<R, N>, column: usize| {
             answers.get(column).map_or(zero, |answer| dot(&row.gradient, answer))
         };
-        let most = MOST_IMPACTS.saturating_mul(K);
+        let (most, mut stuck) = (MOST_IMPACTS.saturating_mul(K), [false; K]);
         for impact in 0..=most {
             let (mut part, mut b, mut approaching) = (touching, [zero; K], None);
             for (index, ((part, b), row)) in part.iter_mut().zip(&mut b).zip(&present).enumerate() {
                 let none = no_rate(row, &next.qd, model.metric);
                 // The last one takes contacts along that separate: it is the shortest change to speeds that open or keep all gaps.
                 let restitution = row.restitution.filter(|_| impact < most).unwrap_or(zero);
-                *part = *part && (impact == most || row.rate <= none);
+                // What was closed has no rate but rounding.
+                let closed = impact == 0 && S::grips(model.parameters).get(index).is_some_and(sticks);
+                *part = *part && (impact == most || row.rate <= none || closed);
                 *b = row.rate + restitution * row.rate.min(zero);
                 if *part && row.rate < -none && approaching.is_none() {
                     approaching = Some(index);
                 }
             }
             let Some(index) = approaching else { break };
-            let Some(impulses) = impulses(&gradients, &part, &b, entry) else {
+            // The first one that approaches strikes by itself, or with all that share their impulses.
+            let first = present.get(index).is_some_and(|row| row.ordered);
+            for (other, (part, row)) in part.iter_mut().zip(&present).enumerate() {
+                *part = *part && (impact == most || if first { other == index } else { !row.ordered });
+            }
+            let acting = rubbing(rows, &part);
+            let found = if const { S::HAS_FRICTION_ON_CONTACTS } && acting != part {
+                let share = if impact < most { R::constant(1.0) } else { zero };
+                let found = Impact { rows: &present, part: acting, answers: &answers }.solve(share);
+                // Impacts that others make may move what has stuck.
+                stuck = found.map_or(stuck, |found| found.sticks);
+                found.map(|found| found.impulses)
+            } else {
+                stuck = [false; K];
+                impulses(&gradients, &part, &b, entry)
+            };
+            let Some(impulses) = found else {
                 let contact = contact::<S, R, N, M>(index);
                 return Err(FailureKind::ImpactUndecided { contact }.at(self.t.to_f64()));
             };
@@ -182,8 +199,27 @@ where
             }
             read(&next, &mut present);
         }
-        let mut modes = parameters;
-        self.rest(&closed, (&mut next, &mut modes), (&present, &touching), entry, &answers)?;
+        let mut rubs = parameters;
+        // What a unit of a contact's force does with the frictions that slide on it.
+        let mut columns = answers;
+        if const { S::HAS_FRICTION_ON_CONTACTS } {
+            let acting = rubbing(rows, &touching);
+            for (index, (row, grip)) in present.iter().zip(S::grips_mut(&mut rubs)).enumerate() {
+                let Some(on) = row.on.filter(|_| acting.get(index) == Some(&true)) else { continue };
+                let sticks = stuck.get(index) == Some(&true);
+                grip.direction = if sticks { zero } else { slip(row.rate) };
+                grip.place = if sticks { row.place } else { zero };
+                let answer = answers.get(index).copied().unwrap_or([zero; N]);
+                let sliding = -(grip.direction * on.sliding);
+                let column = columns.iter_mut().skip(on.contact).take(1);
+                column.for_each(|column| *column = column.plus(sliding, &[1.0], [&answer]));
+            }
+        }
+        let entry = |row: &SetValuedRow<R, N>, column: usize| {
+            columns.get(column).map_or(zero, |answer| dot(&row.gradient, answer))
+        };
+        let (mut modes, closed) = (rubs, Model { parameters: &rubs, ..*model });
+        self.rest(&closed, (&mut next, &mut modes), (&present, &touching), entry, &columns)?;
         read(&next, &mut present);
         let grips = S::grips_mut(&mut modes).iter_mut().zip(S::grips(model.parameters)).zip(&present);
         for ((grip, old), row) in grips {
@@ -191,9 +227,16 @@ where
             match row.restitution {
                 Some(_) if moves || !sticks(grip) => grip.direction = R::constant(1.0),
                 Some(_) => {}
+                // Decided with the contacts.
+                None if row.on.is_some() => {}
                 None if moves => grip.direction = row.rate.sign(),
                 None => *grip = *old,
             }
+        }
+        if const { S::HAS_FRICTION_ON_CONTACTS } {
+            let open = rows.map(|row| is_off(&row, S::grips(&modes)));
+            let frictions = S::grips_mut(&mut modes).iter_mut().zip(&open).filter(|(_, open)| **open);
+            frictions.for_each(|(grip, _)| grip.direction = R::constant(1.0));
         }
         let gained = kinetic(&next.qd) - before;
         Ok(Some(Struck { y: next, parameters: modes, gained }))
@@ -212,12 +255,21 @@ where
 {
     /// The state with gaps of 0 where contacts touch, its velocities on the constraints alone; and parameters with these contacts closed and
     /// with all frictions sliding.
-    fn closed<const K: usize>(&mut self, touching: &[bool; K]) -> Result<StateInModes<S, R, N, M>, Failure> {
+    fn closed<const K: usize>(
+        &mut self,
+        rows: &[SetValuedRow<R, N>; K],
+        touching: &[bool; K],
+    ) -> Result<StateInModes<S, R, N, M>, Failure> {
         let (model, zero, one) = (self.model, R::constant(0.0), R::constant(1.0));
         let (mut next, mut parameters) = (*self.y, *model.parameters);
         for (grip, touches) in S::grips_mut(&mut parameters).iter_mut().zip(touching) {
             let since = if sticks(grip) { grip.since } else { self.t };
             (grip.direction, grip.place, grip.since) = (if *touches { zero } else { one }, zero, since);
+        }
+        if const { S::HAS_FRICTION_ON_CONTACTS } {
+            for (grip, row) in S::grips_mut(&mut parameters).iter_mut().zip(rows) {
+                grip.direction = if row.on.is_some() { slip(row.rate) } else { grip.direction };
+            }
         }
         let closed = Model { parameters: &parameters, ..*model };
         closed.settle(&Projection::default(), self.t, &mut next, self.counts)?;
@@ -247,7 +299,15 @@ where
             let position = closed.position(self.t, next);
             closed.with_grip_forces(&position, next, (&known.rate.qd, &known.lambda))
         });
-        let all = Shares::of(rows, touching, &entry);
+        // What sticks on a contact stays so while others close.
+        let with_stuck = |mask: &[bool; K]| {
+            let mut mask = *mask;
+            let frictions = mask.iter_mut().zip(rows).zip(S::grips(closed.parameters));
+            frictions.for_each(|((held, row), grip)| *held = *held || row.on.is_some() && sticks(grip));
+            mask
+        };
+        let mask = with_stuck(touching);
+        let all = Shares::of(rows, &mask, &entry);
         let (mut ends, mut open) = ([false; K], [zero; K]);
         for (index, (row, touches)) in rows.iter().zip(touching).enumerate() {
             let Some(restitution) = row.restitution.filter(|_| *touches) else { continue };
@@ -273,7 +333,10 @@ where
                 }
             }
         }
-        let shares = Shares::of(rows, &ends, entry);
+        for (open, row) in open.iter_mut().zip(rows).filter(|(_, row)| row.on.is_some()) {
+            *open = row.rate;
+        }
+        let shares = Shares::of(rows, &with_stuck(&ends), entry);
         for (share, answer) in shares.solve(&open).iter().zip(answers) {
             next.qd = next.qd.plus(-*share, &[1.0], [answer]);
         }
@@ -281,55 +344,24 @@ where
     }
 }
 
+/// Direction of a slip that has none where it is 0.
+fn slip<R: Real>(rate: R) -> R {
+    if rate < R::constant(0.0) { R::constant(-1.0) } else { R::constant(1.0) }
+}
+
+/// Contacts of `mask`, and the frictions on them.
+fn rubbing<R: Real, const N: usize, const K: usize>(
+    rows: &[SetValuedRow<R, N>; K],
+    mask: &[bool; K],
+) -> [bool; K] {
+    let mut rubbing = *mask;
+    for (rubs, row) in rubbing.iter_mut().zip(rows) {
+        *rubs = *rubs || row.on.is_some_and(|on| mask.get(on.contact) == Some(&true));
+    }
+    rubbing
+}
+
 /// The contact at `index` among the set-valued forces.
 fn contact<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(index: usize) -> &'static Entry {
     checks::entry(S::SET_VALUED, u16::try_from(index).unwrap_or(u16::MAX))
-}
-
-/// P ≥ 0 (K) with W P + b ≥ 0 and one of both 0 in each row of `part`; 0 elsewhere. `None` where changes of the active set do not end.
-fn impulses<R: Real, const N: usize, const K: usize>(
-    rows: &[SetValuedRow<R, N>; K],
-    part: &[bool; K],
-    b: &[R; K],
-    entry: impl Fn(&SetValuedRow<R, N>, usize) -> R,
-) -> Option<[R; K]> {
-    let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let (mut impulses, mut active) = ([zero; K], [false; K]);
-    for _ in 0..MOST_CHANGES.saturating_mul(K.saturating_add(1)) {
-        let (mut most, mut next) = (zero, None);
-        for (index, ((row, b), _)) in rows.iter().zip(b).zip(part).enumerate().filter(|(_, (_, part))| **part)
-        {
-            let terms = impulses.iter().enumerate().map(|(column, impulse)| entry(row, column) * *impulse);
-            let (sum, size) = terms.fold((*b, b.abs()), |(sum, size), term| (sum + term, size + term.abs()));
-            let misses = -sum / entry(row, index).sqrt();
-            if active.get(index) == Some(&false)
-                && set_valued::EDGE.of::<R>() * size < -sum
-                && (next.is_none() || most < misses)
-            {
-                (most, next) = (misses, Some(index));
-            }
-        }
-        let Some(next) = next else { return Some(impulses) };
-        active.iter_mut().skip(next).take(1).for_each(|active| *active = true);
-        for _ in 0..=K {
-            let wanted = Shares::of(rows, &active, &entry).solve(&b.map(|b| -b));
-            let mut share = one;
-            for ((old, new), _) in impulses.iter().zip(&wanted).zip(&active).filter(|(_, active)| **active) {
-                if *new <= zero {
-                    share = share.min(*old / (*old - *new).max(R::constant(f64::from(f32::MIN_POSITIVE))));
-                }
-            }
-            for ((old, new), active) in impulses.iter_mut().zip(&wanted).zip(&mut active) {
-                let moved = *old + share * (*new - *old);
-                let leaves =
-                    *new <= zero && (moved <= set_valued::EDGE.of::<R>() * old.abs() || *old == zero);
-                *active = *active && !leaves;
-                *old = if *active { moved } else { zero };
-            }
-            if one <= share {
-                break;
-            }
-        }
-    }
-    None
 }

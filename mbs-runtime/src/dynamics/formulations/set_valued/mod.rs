@@ -3,38 +3,32 @@
 //! A friction that sticks adds s̈ = J q̈ − γ = 0 with the force h along s. The formulation solves without it; its answers A Jᵀ to unit
 //! forces give W = J A Jᵀ, and W h = γ − J q̈₀ the forces (Schur complement). Rows that follow from others share a force in
 //! proportion to their limits. Drift is taken out against the length at which it sticks. A closed contact is such a row too: its force is
-//! 0 or pushes, and its length, the gap, is 0.
+//! 0 or pushes, and its length, the gap, is 0. A friction that slides on it acts with its force N: so a unit of N acts along J − σ μ J_f, and
+//! W is not symmetric.
 //! Source: Glocker 2001, Set-Valued Force Laws, ch. 3 and 5.
 
 pub(crate) mod decide;
 pub(crate) mod impact;
+mod impulses;
+mod modes;
+mod shares;
 pub(crate) mod slips;
 
 use crate::dynamics::formulations::projection::correction_factors;
+use crate::dynamics::formulations::set_valued::shares::{Shares, within_limits};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::{Balanced, Counts, Formulation, Model};
 use crate::failure::Failure;
-use crate::linear_algebra::factorization::Factorization;
-use crate::linear_algebra::lu::Lu;
-use crate::linear_algebra::parts::{at, diagonal_mut, identity};
+use crate::linear_algebra::parts::at;
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::set_valued::{Grip, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, set_valued};
+use crate::tolerances::motion;
 
 /// Corrections of one position: the first leaves the square of the drift of a step.
 const MOST_CORRECTIONS: u32 = 4;
-
-/// Steps towards the shortest of many solutions; each leaves half or less of what directions above [`set_valued::RAISED`] lack.
-const MOST_STEPS: u32 = 40;
-
-/// Least weight of a row among those that share a force, of the largest.
-const LEAST_WEIGHT: f64 = 1e-3;
-
-/// Distance to its limit of a row whose force others take over, in edges of sticking: it does not count as slipping.
-const WITHIN: f64 = 4.0;
 
 /// `true` for a friction that sticks.
 pub(crate) fn sticks<R: Real>(grip: &Grip<R>) -> bool {
@@ -54,9 +48,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         S::grips(self.parameters).iter().any(sticks)
     }
 
-    /// Parameters with the same grips as here.
+    /// Parameters with the same grips and values of events as here.
     #[inline(always)]
     pub(crate) fn gripping(&self, mut parameters: S::Parameters) -> S::Parameters {
+        let values = S::remembered_mut(&mut parameters).iter_mut();
+        values.zip(S::remembered(self.parameters)).for_each(|(to, from)| *to = *from);
         for (to, from) in S::grips_mut(&mut parameters).iter_mut().zip(S::grips(self.parameters)) {
             *to = *from;
         }
@@ -184,6 +180,36 @@ pub(crate) fn no_rate<R: Real, const N: usize, const M: usize>(
     motion::NO_VALUE.of::<R>() * terms
 }
 
+/// The force (N) on the coordinates by a unit force of the row at `index`: its gradient, and of a contact the frictions that slide on it.
+#[inline(always)]
+pub(crate) fn column<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize, const K: usize>(
+    rows: &[SetValuedRow<R, N>; K],
+    grips: &[Grip<R>],
+    index: usize,
+) -> [R; N] {
+    let mut column = rows.get(index).map_or([R::constant(0.0); N], |row| row.gradient);
+    if const { S::HAS_FRICTION_ON_CONTACTS } {
+        for (row, grip) in rows.iter().zip(grips) {
+            if let Some(on) = row.on.filter(|on| on.contact == index) {
+                column = column.plus(-(grip.direction * on.sliding), &[1.0], [&row.gradient]);
+            }
+        }
+    }
+    column
+}
+
+/// Largest force (N) with which a friction sticks, at the forces of the contacts.
+pub(crate) fn limit<R: Real, const N: usize>(row: &SetValuedRow<R, N>, grips: &[Grip<R>]) -> R {
+    row.on.map_or(row.limit, |on| {
+        on.sticking * grips.get(on.contact).map_or(R::constant(0.0), |contact| contact.force)
+    })
+}
+
+/// `true` for a friction on a contact that is open: it has no force.
+pub(crate) fn is_off<R: Real, const N: usize>(row: &SetValuedRow<R, N>, grips: &[Grip<R>]) -> bool {
+    row.on.is_some_and(|on| grips.get(on.contact).is_some_and(|contact| !sticks(contact)))
+}
+
 /// Solution with the rows held that stick.
 struct Held<'a, S: Dynamic<R, N, M>, R: Real, F, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
@@ -204,12 +230,12 @@ where
 
     fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let zero = R::constant(0.0);
-        let mask: [bool; K] = mask(S::grips(self.model.parameters));
+        let grips = S::grips(self.model.parameters);
+        let mask: [bool; K] = mask(grips);
         let mut answers = [([zero; N], [zero; M]); K];
-        for (answer, (row, _)) in
-            answers.iter_mut().zip(rows.iter().zip(&mask)).filter(|(_, (_, held))| **held)
+        for (index, (answer, _)) in answers.iter_mut().zip(&mask).enumerate().filter(|(_, (_, held))| **held)
         {
-            *answer = (self.solve)(&row.gradient, false);
+            *answer = (self.solve)(&column::<S, R, N, M, K>(rows, grips, index), false);
         }
         let shares = Shares::of(rows, &mask, |row, column| {
             answers.get(column).map_or(zero, |answer| dot(&row.gradient, &answer.0))
@@ -255,13 +281,28 @@ where
             scaled.iter_mut().zip(scales).for_each(|(x, scale)| *x = *x * *scale);
             scaled
         };
+        let mut rows = *rows;
+        if const { S::HAS_FRICTION_ON_CONTACTS } {
+            let (whole, grips) = (rows, S::grips(self.model.parameters));
+            for (index, row) in rows.iter_mut().enumerate() {
+                row.gradient = column::<S, R, N, M, K>(&whole, grips, index);
+                // The limit of a friction on a contact is known with the force of that.
+                row.limit = if row.on.is_some() { R::constant(f64::INFINITY) } else { row.limit };
+            }
+        }
         let along = rows.map(|row| scaled(&row.gradient));
         let open = scaled(&self.open);
         let right = along.map(|along| dot(&along, &open));
         let entry = |row: &SetValuedRow<R, N>, column: usize| {
             along.get(column).map_or(zero, |other| dot(&scaled(&row.gradient), other))
         };
-        let forces = within_limits(rows, mask, &right, entry);
+        let mut forces = within_limits(&rows, mask, &right, entry);
+        if const { S::HAS_FRICTION_ON_CONTACTS } {
+            for row in &mut rows {
+                row.limit = row.on.map_or(row.limit, |on| on.sticking * at(&forces, on.contact).max(zero));
+            }
+            forces = within_limits(&rows, mask, &right, entry);
+        }
         for (grip, force) in S::grips_mut(&mut self.parameters).iter_mut().zip(&forces) {
             grip.force = *force;
         }
@@ -318,147 +359,5 @@ where
             step = step.plus(*share, &[1.0], [answer]);
         }
         Ok(Some(step))
-    }
-}
-
-/// Forces of W h = b, b = `right` (K), of rows that stick, `entry` those of W. Where rows follow from others, forces beyond their limits
-/// are taken over by others as far as these can: one row after the other is kept within its limit, the one that exceeds it most first. A
-/// contact exceeds it where it pulls.
-fn within_limits<R: Real, const N: usize, const K: usize>(
-    rows: &[SetValuedRow<R, N>; K],
-    mut mask: [bool; K],
-    right: &[R; K],
-    entry: impl Fn(&SetValuedRow<R, N>, usize) -> R,
-) -> [R; K] {
-    let zero = R::constant(0.0);
-    let (held, mut kept, mut bound) = (mask, [zero; K], [true; K]);
-    let mut is_kept = false;
-    let mut forces = kept;
-    for _ in 0..=K {
-        let shares = Shares::of(rows, &mask, &entry);
-        let mut rest = *right;
-        for (rest, row) in rest.iter_mut().zip(rows) {
-            *rest =
-                kept.iter().enumerate().fold(*rest, |rest, (column, kept)| rest - entry(row, column) * *kept);
-        }
-        let found = shares.solve(&rest).plus(R::constant(1.0), &[1.0], [&kept]);
-        let meets = |((row, right), held): ((&SetValuedRow<R, N>, &R), &bool)| {
-            let terms = found.iter().enumerate().map(|(column, force)| entry(row, column) * *force);
-            let (sum, size) =
-                terms.fold((-*right, right.abs()), |(sum, size), term| (sum + term, size + term.abs()));
-            !*held || sum.abs() <= set_valued::CONTRADICTED.of::<R>() * size
-        };
-        if is_kept && !rows.iter().zip(right).zip(&held).all(meets) {
-            break;
-        }
-        forces = found;
-        if !shares.singular {
-            break;
-        }
-        let (mut worst, mut most) = (None, R::constant(1.0));
-        let largest = forces.iter().fold(zero, |largest: R, force| largest.max(force.abs()));
-        for (index, ((force, row), free)) in forces.iter().zip(rows).zip(&bound).enumerate() {
-            let ratio = match row.restitution {
-                None => force.abs() / row.limit,
-                Some(_) => R::constant(1.0) - *force / largest,
-            };
-            if *free && most < ratio {
-                (worst, most) = (Some(index), ratio);
-            }
-        }
-        let Some(worst) = worst else { break };
-        let place =
-            kept.iter_mut().zip(&mut mask).zip(&mut bound).zip(forces.iter().zip(rows)).skip(worst).take(1);
-        for (((kept, mask), bound), (force, row)) in place {
-            let within = row.limit * (R::constant(1.0) - R::constant(WITHIN) * set_valued::EDGE.of());
-            *kept = match row.restitution {
-                Some(_) => zero,
-                None if *force < zero => -within,
-                None => within,
-            };
-            (*mask, *bound, is_kept) = (false, false, true);
-        }
-    }
-    forces
-}
-
-/// W x = b of the rows that stick, W symmetric and not negative: the shortest solution, each row in parts of its limit.
-struct Shares<R: Real, const K: usize> {
-    mask: [bool; K],
-    /// Divisors of rows, factors of unknowns.
-    weights: [R; K],
-    matrix: [[R; K]; K],
-    factors: Lu<R, K>,
-    /// `true` if rows follow from others.
-    singular: bool,
-}
-
-impl<R: Real, const K: usize> Shares<R, K> {
-    fn of<const N: usize>(
-        rows: &[SetValuedRow<R, N>; K],
-        mask: &[bool; K],
-        entry: impl Fn(&SetValuedRow<R, N>, usize) -> R,
-    ) -> Self {
-        let (zero, one) = (R::constant(0.0), R::constant(1.0));
-        let mut matrix = identity::<R, K>();
-        for ((line, row), _) in matrix.iter_mut().zip(rows).zip(mask).filter(|(_, held)| **held) {
-            for (column, (slot, _)) in line.iter_mut().zip(mask).enumerate().filter(|(_, (_, held))| **held) {
-                *slot = entry(row, column);
-            }
-        }
-        let largest = |values: &mut dyn Iterator<Item = R>| values.fold(zero, |sum: R, x| sum.max(x));
-        let limit = largest(&mut rows.iter().zip(mask).filter(|(_, held)| **held).map(|(row, _)| row.limit));
-        let mut weights = [one; K];
-        for ((weight, row), _) in weights.iter_mut().zip(rows).zip(mask).filter(|(_, held)| **held) {
-            // The shortest x = √limit u has x in proportion to the limits.
-            let share = (row.limit / limit).max(R::constant(LEAST_WEIGHT)).sqrt();
-            *weight = if share.is_finite() && row.restitution.is_none() { share } else { one };
-        }
-        scale(&mut matrix, &weights);
-        let size = largest(&mut matrix.iter().enumerate().map(|(index, row)| at(row, index)));
-        let size = if zero < size && size.is_finite() { one / size.sqrt() } else { one };
-        // Rows that slide keep a one of their own.
-        for ((weight, row), held) in weights.iter_mut().zip(&mut matrix).zip(mask) {
-            *weight = if *held { *weight * size } else { one };
-            row.iter_mut().for_each(|entry| *entry = if *held { *entry * size * size } else { *entry });
-        }
-        let (factors, margin) = Lu::factorize(&matrix, &[one; K], &[one; K]);
-        let mut shares = Shares { mask: *mask, weights, matrix, factors, singular: false };
-        // Written so that NaN is singular.
-        if !set_valued::DEPENDENT.of::<R>().less(margin) {
-            let mut raised = matrix;
-            diagonal_mut(&mut raised).for_each(|entry| *entry = *entry + set_valued::RAISED.of());
-            shares.factors = Lu::factorize(&raised, &[one; K], &[one; K]).0;
-            shares.singular = true;
-        }
-        shares
-    }
-
-    /// x of `right` (K); 0 for rows that slide.
-    fn solve(&self, right: &[R; K]) -> [R; K] {
-        let zero = R::constant(0.0);
-        let mut open = *right;
-        for ((open, weight), held) in open.iter_mut().zip(&self.weights).zip(&self.mask) {
-            *open = if *held { *open * *weight } else { zero };
-        }
-        let mut x = self.factors.solve(&open);
-        for _ in 0..if self.singular { MOST_STEPS } else { 1 } {
-            let mut rest = open;
-            for (rest, row) in rest.iter_mut().zip(&self.matrix) {
-                *rest = *rest - dot(row, &x);
-            }
-            x = x.plus(R::constant(1.0), &[1.0], [&self.factors.solve(&rest)]);
-        }
-        for ((x, weight), held) in x.iter_mut().zip(&self.weights).zip(&self.mask) {
-            *x = if *held { *x * *weight } else { zero };
-        }
-        x
-    }
-}
-
-/// Rows and columns times `weights` (K).
-fn scale<R: Real, const K: usize>(matrix: &mut [[R; K]; K], weights: &[R; K]) {
-    for (row, weight) in matrix.iter_mut().zip(weights) {
-        row.iter_mut().zip(weights).for_each(|(entry, other)| *entry = *entry * *weight * *other);
     }
 }

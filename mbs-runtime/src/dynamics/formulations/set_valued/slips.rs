@@ -1,8 +1,8 @@
 //! Ends of sticking and of sliding within a step, and of open and closed contacts.
 
-use crate::dynamics::formulations::set_valued::{no_gap, no_rate, sticks};
+use crate::dynamics::formulations::set_valued::{is_off, limit, no_gap, no_rate, sticks};
 use crate::dynamics::integrators::event::Scrutiny;
-use crate::dynamics::integrators::event::group::{GROUP, Watched, first_beyond};
+use crate::dynamics::integrators::event::group::{Filled, GROUP, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
@@ -44,7 +44,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         fill: impl FnMut(R, usize, &mut [R; GROUP]),
     ) -> Result<Option<R>, Failure> {
         let scrutiny = Scrutiny { resolution, ..Scrutiny::beyond() };
-        match first_beyond(&mut Slips { count: SIDES * S::SET_VALUED.len(), scrutiny, fill }, times) {
+        match first_beyond(&mut Filled { count: SIDES * S::SET_VALUED.len(), scrutiny, fill }, times) {
             Ok(found) => Ok(found.map(|(_, t)| t)),
             Err((member, _)) => {
                 let index = u16::try_from(member / SIDES).unwrap_or(u16::MAX);
@@ -71,48 +71,23 @@ where
     type Output = ();
 
     fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) {
-        let one = R::constant(1.0);
+        let (one, grips) = (R::constant(1.0), S::grips(self.held));
         for (place, value) in self.values.iter_mut().enumerate() {
             let (index, side) = ((self.first + place) / SIDES, (self.first + place) % SIDES);
-            let (Some(row), Some(grip)) = (rows.get(index), S::grips(self.held).get(index)) else { return };
+            let (Some(row), Some(grip)) = (rows.get(index), grips.get(index)) else { return };
             *value = match (sticks(grip), side) {
                 (true, 0) if row.restitution.is_some() => grip.force,
                 (_, 1) if row.restitution.is_some() => one,
                 (false, _) if row.restitution.is_some() => {
                     row.place + no_gap(row, &self.y.q, self.model.metric)
                 }
-                (true, 0) => row.limit - grip.force,
-                (true, _) => row.limit + grip.force,
+                _ if is_off(row, grips) => one,
+                (true, 0) => limit(row, grips) - grip.force,
+                (true, _) => limit(row, grips) + grip.force,
                 // A speed that is none has not ended.
                 (false, 0) => grip.direction * row.rate + no_rate(row, &self.y.qd, self.model.metric),
                 (false, _) => one,
             };
         }
-    }
-}
-
-/// The functions along a step.
-struct Slips<R, F> {
-    count: usize,
-    scrutiny: Scrutiny<R>,
-    fill: F,
-}
-
-impl<R: Real, F: FnMut(R, usize, &mut [R; GROUP])> Watched<R> for Slips<R, F> {
-    fn count(&self) -> usize {
-        self.count
-    }
-
-    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
-        (self.fill)(t, first, values);
-    }
-
-    /// Each begins on its side: modes were decided there.
-    fn positive(&self, _: usize) -> bool {
-        true
-    }
-
-    fn scrutiny(&mut self, _: usize, _: R) -> Scrutiny<R> {
-        self.scrutiny
     }
 }

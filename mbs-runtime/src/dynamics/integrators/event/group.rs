@@ -35,6 +35,34 @@ pub trait Watched<R> {
     fn clear_by_ends(&mut self, _first: usize, _times: (R, R), _near: &mut [bool; GROUP]) {}
 }
 
+/// Functions that begin positive, whatever their values are, all of one resolution: `fill` computes those from an index on at a time (s).
+pub struct Filled<R, F> {
+    /// Their number.
+    pub count: usize,
+    /// Resolution and bounds of the search.
+    pub scrutiny: Scrutiny<R>,
+    /// Their values.
+    pub fill: F,
+}
+
+impl<R: Real, F: FnMut(R, usize, &mut [R; GROUP])> Watched<R> for Filled<R, F> {
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
+        (self.fill)(t, first, values);
+    }
+
+    fn positive(&self, _: usize) -> bool {
+        true
+    }
+
+    fn scrutiny(&mut self, _: usize, _: R) -> Scrutiny<R> {
+        self.scrutiny
+    }
+}
+
 /// Index of a function among several, with its zero or with the reason for which it has no answer.
 pub type Member<X> = (usize, X);
 

@@ -1,0 +1,10 @@
+//! Friction on rigid contacts: sticking, sliding, impacts and paradoxes, against closed forms.
+#![forbid(unsafe_code)]
+
+mod blocks;
+mod coordinates;
+mod cradle;
+mod disk;
+mod random;
+mod rod;
+mod woodpecker;
