@@ -798,19 +798,18 @@ const _: () = {
                     ([__n35, __n41], [[__n37, __n57], [__n33, __n58]])
                 }
             };
-            let __described = ::mbs_runtime::Block {
-                rows: [2, 3],
-                coordinates: [3, 4],
-                angles: [true, true],
-                row_scales: [T::constant(0.3f64), T::constant(0.3f64)],
-                coordinate_scales: [T::constant(1.0f64), T::constant(1.0f64)],
-            };
             let (__x, __block) = __solver
                 .solve_closed::<
                     2,
                     ::mbs_runtime::Direct2<T>,
                 >(
-                    &__described,
+                    &::mbs_runtime::Block {
+                        rows: [2, 3],
+                        coordinates: [3, 4],
+                        angles: [true, true],
+                        row_scales: [T::constant(0.3f64), T::constant(0.3f64)],
+                        coordinate_scales: [T::constant(1.0f64), T::constant(1.0f64)],
+                    },
                     [__q[3], __q[4]],
                     #[inline(always)]
                     |__x| {

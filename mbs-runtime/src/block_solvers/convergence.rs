@@ -31,16 +31,6 @@ pub(crate) fn own_rounding<T: Scalar>(row_scale: T) -> T {
     positions::OF_TERMS.of::<T>() * row_scale
 }
 
-/// Lanes in which a coordinate is so large that its rounding may be more than that of a row's own terms.
-#[inline(always)]
-pub(crate) fn rounding_shows<T: Scalar, const K: usize>(x: &[T; K], coordinate_scales: &[T; K]) -> T::Mask {
-    let mut shows = T::mask(false);
-    for (coordinate, scale) in x.iter().zip(coordinate_scales) {
-        shows = shows | (positions::LARGE.of::<T>() * *scale).less(coordinate.abs());
-    }
-    shows
-}
-
 /// Rounding of coordinates outside the block, granted besides [`required`]: 4 ε e Σⱼ |Jᵢⱼ| sⱼ with the extent e of all of q.
 ///
 /// In relative coordinates a row of the block sees ψ1 + ψ2. Its rounding is that of ψ1, which may be turns away

@@ -1,7 +1,9 @@
-//! Newton's method without safeguards, of dyads with second derivatives, for steps close to a regular position; the caller checks the result.
+//! Newton's method without safeguards, for steps close to a regular position; the caller checks the result.
+//!
+//! Circles and lines take second derivatives where the prediction is so far from its root that Newton's method would evaluate thrice.
 
-use crate::block_solvers::convergence::{own_rounding, required, rounding_shows};
-use crate::block_solvers::step_rules::{NewtonStep, RootStep, StepRule};
+use crate::block_solvers::convergence::{own_rounding, required};
+use crate::block_solvers::root_step::to_root;
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::{select, weights as reciprocals};
@@ -17,7 +19,9 @@ const EVALUATIONS: u32 = 5;
 ///
 /// The caller judges the result. It is a solution in the lanes of [`closed`](Self::closed), but its assembly and its margin were
 /// not checked during the iteration. A lane that does not close stays and delays no other one.
-pub(crate) struct FastNewton<T: Scalar> {
+///
+/// `FAR`: circles and lines step by second derivatives, in one lane.
+pub(crate) struct FastNewton<T: Scalar, const FAR: bool = false> {
     /// Lanes in which every block has closed so far.
     pub closed: T::Mask,
     /// Evaluations of residual and Jacobian, the most of any block and lane.
@@ -32,7 +36,7 @@ pub(crate) struct FastNewton<T: Scalar> {
     pub row_alone: u16,
 }
 
-impl<T: Scalar> FastNewton<T> {
+impl<T: Scalar, const FAR: bool> FastNewton<T, FAR> {
     /// Before the first block; lanes outside `lanes` are left as they are and cost nothing.
     #[inline(always)]
     pub fn new(lanes: T::Mask) -> Self {
@@ -60,30 +64,13 @@ impl<T: Scalar> FastNewton<T> {
         self.ratio = self.ratio.max(ratio);
     }
 
-    /// Iterates by `step`, which gives what to subtract from a point with its Jacobian and its residuals.
-    #[inline(always)]
-    fn solve_by<const K: usize, F: Factorization<T, K>, S: StepRule<T, K>>(
-        &mut self,
-        block: &Block<T, K>,
-        x: [T; K],
-        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-        step: S,
-    ) -> ([T; K], T::Lanes<Outcome>) {
-        let x = match T::LANES {
-            1 => self.solve_alone::<K, F, S>(block, x, evaluate, step),
-            _ => self.solve_lanes::<K, F, S>(block, x, evaluate, step),
-        };
-        (x, T::per_lane(|_| Outcome::Converged))
-    }
-
-    /// [`solve_by`](Self::solve_by) in several lanes.
+    /// [`solve`](BlockSolver::solve) in several lanes.
     #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
-    fn solve_lanes<const K: usize, F: Factorization<T, K>, S: StepRule<T, K>>(
+    fn solve_lanes<const K: usize, F: Factorization<T, K>>(
         &mut self,
         block: &Block<T, K>,
         mut x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-        step: S,
     ) -> [T; K] {
         let own = block.row_scales.map(own_rounding);
         // A division is paid for in every step, a reciprocal of a number of the text is one.
@@ -94,18 +81,16 @@ impl<T: Scalar> FastNewton<T> {
             evaluations += 1;
             counts = T::select(done, counts, T::constant(f64::from(evaluations)));
             done = done | within(&residuals, &own);
-            let asked = T::mask(!S::SECOND_ORDER || evaluations == EVALUATIONS)
-                | may_be_rounding(&residuals, &own, &x, &block.coordinate_scales);
-            if evaluations > 1 && !T::all(done | !asked) {
+            if evaluations > 1 && !T::all(done) {
                 let whole = granted(residuals, block.row_scales, x, jacobian);
-                let closes = asked & !done & within(&residuals, &whole);
+                let closes = !done & within(&residuals, &whole);
                 weights = select(closes, &reciprocals(&whole), &weights);
                 done = done | closes;
             }
             if T::all(done) || evaluations == EVALUATIONS {
                 break residuals;
             }
-            let step = step.of::<F>(block, &x, &jacobian, &residuals);
+            let step = F::newton_step(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
             let mut next = x;
             for (component, change) in next.iter_mut().zip(&step) {
                 *component = *component - *change;
@@ -119,22 +104,21 @@ impl<T: Scalar> FastNewton<T> {
         x
     }
 
-    /// [`solve_by`](Self::solve_by) in one lane, with the rarely needed code kept apart.
+    /// [`solve`](BlockSolver::solve) in one lane, with the rarely needed code kept apart; `second`: second derivatives of
+    /// circles and lines.
     #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
-    fn solve_alone<const K: usize, F: Factorization<T, K>, S: StepRule<T, K>>(
+    fn solve_alone<const K: usize, F: Factorization<T, K>>(
         &mut self,
         block: &Block<T, K>,
         mut x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-        step: S,
+        second: Option<&[T; K]>,
     ) -> [T; K] {
         let own = block.row_scales.map(own_rounding);
         let (mut residuals, mut jacobian) = evaluate(&x);
         let mut evaluations = 1;
         while !all_within(&residuals, &own) {
-            // What is far from closing goes on without the call.
-            let asked = || T::all(may_be_rounding(&residuals, &own, &x, &block.coordinate_scales));
-            if evaluations > 1 && (!S::SECOND_ORDER || asked() || evaluations == EVALUATIONS) {
+            if evaluations > 1 {
                 let (ratio, row) = worst_granted(residuals, block.row_scales, x, jacobian, block.rows);
                 if T::all(ratio.less(T::constant(1.0))) {
                     self.evaluations = self.evaluations.max(evaluations);
@@ -146,7 +130,10 @@ impl<T: Scalar> FastNewton<T> {
                     break;
                 }
             }
-            let step = step.of::<F>(block, &x, &jacobian, &residuals);
+            let step = match second {
+                Some(second) => to_root::<T, K, F>(block, &jacobian, &residuals, second),
+                None => F::newton_step(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales),
+            };
             for (component, change) in x.iter_mut().zip(&step) {
                 *component = *component - *change;
             }
@@ -160,9 +147,9 @@ impl<T: Scalar> FastNewton<T> {
     }
 }
 
-impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
+impl<T: Scalar, const FAR: bool> BlockSolver<T> for FastNewton<T, FAR> {
     const INLINED_PER_BLOCK: bool = true;
-    const SECOND_ORDER: bool = true;
+    const SECOND_ORDER: bool = FAR && T::LANES == 1;
 
     #[inline(always)]
     fn solve<const K: usize, F: Factorization<T, K>>(
@@ -171,7 +158,11 @@ impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
         x: [T; K],
         evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
-        self.solve_by::<K, F, _>(block, x, evaluate, NewtonStep)
+        let x = match T::LANES {
+            1 => self.solve_alone::<K, F>(block, x, evaluate, None),
+            _ => self.solve_lanes::<K, F>(block, x, evaluate),
+        };
+        (x, T::per_lane(|_| Outcome::Converged))
     }
 
     #[inline(always)]
@@ -182,7 +173,8 @@ impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
         evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
         second: &[T; K],
     ) -> ([T; K], T::Lanes<Outcome>) {
-        self.solve_by::<K, F, _>(block, x, evaluate, RootStep(*second))
+        let x = self.solve_alone::<K, F>(block, x, evaluate, Some(second));
+        (x, T::per_lane(|_| Outcome::Converged))
     }
 
     /// Rows that may contradict each other are always looked at.
@@ -210,18 +202,6 @@ fn within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) ->
     within
 }
 
-/// Lanes in which the whole tolerances, which [`granted`] computes, may be above residuals that are not within their rows' `own`
-/// rounding.
-#[inline(always)]
-fn may_be_rounding<T: Scalar, const K: usize>(
-    residuals: &[T; K],
-    own: &[T; K],
-    x: &[T; K],
-    coordinate_scales: &[T; K],
-) -> T::Mask {
-    within(residuals, &own.map(|own| own + own)) | rounding_shows(x, coordinate_scales)
-}
-
 /// [`within`] as decisions, row by row.
 #[inline(always)]
 fn all_within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) -> bool {
@@ -243,7 +223,7 @@ fn worst_granted<T: Scalar, const K: usize>(
     if !all_within(&residuals, &whole) {
         return (T::constant(2.0), 0);
     }
-    let mut worst = FastNewton::new(T::mask(true));
+    let mut worst = FastNewton::<T>::new(T::mask(true));
     worst.record(&rows, &residuals, &reciprocals(&whole));
     (worst.ratio, worst.row_alone)
 }

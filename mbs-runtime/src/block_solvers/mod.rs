@@ -11,5 +11,5 @@ pub(crate) mod multistart;
 pub(crate) mod newton;
 #[cfg(test)]
 mod newton_tests;
-pub(crate) mod step_rules;
+mod root_step;
 pub(crate) mod trace;

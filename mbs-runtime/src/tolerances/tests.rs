@@ -9,7 +9,6 @@ const SINGLE: f32 = f32::EPSILON;
 const VALUES: &[(&str, Law, f64, f32)] = &[
     ("terms", positions::OF_TERMS, 64.0 * DOUBLE, 64.0 * SINGLE),
     ("coordinates", positions::OF_COORDINATES, 4.0 * DOUBLE, 4.0 * SINGLE),
-    ("large", positions::LARGE, 16.0, 16.0),
     ("stationary", positions::STATIONARY, 1e-4 * DOUBLE, 1e-4 * SINGLE),
     ("in line", positions::IN_LINE, 64.0 * DOUBLE, 64.0 * SINGLE),
     ("dimensions", positions::OF_DIMENSIONS, 5e-14, 5e-14),

@@ -89,21 +89,21 @@ fn newton(
         (None, true) => format!("solve::<{size}, {factors}>"),
         (None, false) => format!("solve_branched::<{size}, {factors}>"),
     };
-    let _ = write!(text, "let __described = {description};\nlet (__x, __block) = ");
+    *text += "let (__x, __block) = ";
     if let Some((second, section)) = curvature {
         *text += "if const { __S::SECOND_ORDER } {\n";
         lets(section, scope, text);
         let second = list(second.iter().map(|id| scope.or_zero(*id)));
         let _ = writeln!(
             text,
-            "__solver.solve_round::<{size}, {factors}>(&__described, {starts}, \
+            "__solver.solve_round::<{size}, {factors}>(&{description}, {starts}, \
              #[inline(always)] |__x| __evaluate(__x), &{second})\n}} else {{"
         );
     }
     let call = format!("__solver.{method}");
     let rows = list(block.rows.iter().map(usize::to_string));
     let widths = if surplus { widths(scope.model, &rows) } else { String::new() };
-    let _ = write!(text, "{call}(&__described, {widths}{starts}, #[inline(always)] |__x| {EVALUATED}");
+    let _ = write!(text, "{call}(&{description}, {widths}{starts}, #[inline(always)] |__x| {EVALUATED}");
     if !branches.is_empty() {
         *text += ", |__x| {\n";
         lets(branch_section, &inner, text);
