@@ -60,6 +60,8 @@ pub struct System {
     pub branch_section: Section,
     /// The formula of both positions, where the block is a dyad, and the section that computes its coefficients.
     pub dyad: Option<(Dyad, Section)>,
+    /// Second derivatives of its rows, with the section that computes them before the iteration.
+    pub curvature: Option<(Vec<Option<NodeId>>, Section)>,
     /// The order in which its unknowns are eliminated; none for closed forms and for pivots sought at run time.
     pub order: Option<Order>,
 }
@@ -74,6 +76,7 @@ pub fn roots(equations: &Equations, structure: &Structure) -> Vec<NodeId> {
                 let (phi, phi_q) = residuals_and_jacobian(equations, block);
                 roots.extend(phi);
                 roots.extend(phi_q.into_iter().flatten().flatten());
+                roots.extend(block.curvature.iter().flatten().flatten());
                 roots.extend(block.rows.iter().filter_map(|row| equations.row_scales.get(*row)));
                 roots.extend(block.coordinates.iter().filter_map(|c| equations.coordinate_scales.get(*c)));
             }
@@ -247,7 +250,11 @@ fn newton(
         (dyad, section)
     });
     let order = block.order.clone();
-    let system = System { section, kept, phi, phi_q, branches, branch_section, dyad, order };
+    let curvature = block.curvature.clone().map(|curvature| {
+        let roots: Vec<NodeId> = curvature.iter().copied().flatten().collect();
+        (curvature, schedule(graph, &roots, known))
+    });
+    let system = System { section, kept, phi, phi_q, branches, branch_section, dyad, curvature, order };
     (before, BlockMethod::Newton(Box::new(system)))
 }
 

@@ -1,5 +1,6 @@
 //! Sparsity → matching → block-triangular order; a system that is not square is reported by name.
 
+pub mod curvature;
 pub mod dyad;
 mod freedom;
 mod independent;
@@ -22,6 +23,9 @@ use crate::symbolic::{Binary, Leaf, Node, NodeId, substitute::substitute};
 use dyad::Dyad;
 use matching::Matching;
 use pivots::Order;
+
+/// Most blocks with a curvature; the steps of more are loops, which take Newton's.
+const MOST_CURVED: usize = 48;
 
 /// The order in which the rows are solved.
 #[derive(Debug)]
@@ -48,6 +52,7 @@ impl Structure {
         for block in &mut self.blocks {
             roots.extend(block.explicit.as_mut().map(|explicit| &mut explicit.value));
             roots.extend(block.dyad.iter_mut().flat_map(Dyad::nodes_mut));
+            roots.extend(block.curvature.iter_mut().flatten().flatten());
         }
         roots
     }
@@ -66,6 +71,8 @@ pub struct Block {
     pub dyad: Option<Dyad>,
     /// The order in which four and more unknowns are eliminated.
     pub order: Option<Order>,
+    /// Second derivatives of its rows, where it is a dyad of circles and lines; see [`curvature`](curvature::curvature).
+    pub curvature: Option<Vec<Option<NodeId>>>,
 }
 
 /// A coordinate that its row gives explicitly.
@@ -131,12 +138,24 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
             let dyad = if explicit.is_some() { None } else { dyad(equations, &rows, &coordinates) };
             let order = order(equations, &rows, &coordinates);
             // A surplus row is a part of its own that determines no coordinate.
-            (!coordinates.is_empty()).then_some(Block { rows, coordinates, explicit, dyad, order })
+            let curvature = None;
+            (!coordinates.is_empty()).then_some(Block { rows, coordinates, explicit, dyad, order, curvature })
         })
         .collect::<Vec<_>>();
-    let blocks = surplus::merged(blocks, &surplus, &rows, &matching, model.coordinates.len());
+    let mut blocks = surplus::merged(blocks, &surplus, &rows, &matching, model.coordinates.len());
+    curve(equations, &mut blocks);
     missing_guesses(model, &blocks, &independent, diagnostics);
     diagnostics.is_empty().then_some(Structure { blocks, square, independent, matched: matching.of_row })
+}
+
+/// Gives dyads of circles and lines their curvature, where blocks are not too many.
+fn curve(equations: &mut Equations, blocks: &mut [Block]) {
+    if blocks.iter().filter(|block| block.explicit.is_none()).count() > MOST_CURVED {
+        return;
+    }
+    for Block { rows, coordinates, dyad, curvature, .. } in blocks {
+        *curvature = dyad.as_ref().and_then(|dyad| curvature::curvature(equations, rows, coordinates, dyad));
+    }
 }
 
 /// `true` if masses move freely although there are as many rows as coordinates. Then some rows follow from others, as the text

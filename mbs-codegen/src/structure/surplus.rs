@@ -102,7 +102,7 @@ fn joined(members: Vec<Block>, surplus: Vec<usize>) -> Block {
     }
     rows.sort_unstable();
     coordinates.sort_unstable();
-    Block { rows, coordinates, explicit: None, dyad: None, order: None }
+    Block { rows, coordinates, explicit: None, dyad: None, order: None, curvature: None }
 }
 
 /// Indices of all blocks that a row depends on, directly or through others.
@@ -155,7 +155,14 @@ mod tests {
             value: crate::symbolic::Graph::default().constant(0.0),
             coefficient: 1.0,
         });
-        Block { rows: rows.to_vec(), coordinates: coordinates.to_vec(), explicit, dyad: None, order: None }
+        Block {
+            rows: rows.to_vec(),
+            coordinates: coordinates.to_vec(),
+            explicit,
+            dyad: None,
+            order: None,
+            curvature: None,
+        }
     }
 
     fn order(

@@ -916,7 +916,7 @@ const _: () = {
                 2,
             >>::factorize(
                 &[[__s.0[12], __n57], [__s.0[10], __n58]],
-                &[T::constant(0.3f64), T::constant(0.3f64)],
+                &[T::constant(1.0f64), T::constant(1.0f64)],
                 &[T::constant(1.0f64), T::constant(1.0f64)],
             );
             let __margin = __margin

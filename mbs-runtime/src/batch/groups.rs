@@ -82,7 +82,7 @@ where
             all = all & near;
             S::GroupNumber::side_by_side();
         }
-        let trial = FastStep::from_prediction(
+        let trial = FastStep::from_prediction::<S::Group, M, false>(
             (&mechanism, &prepared.parameters),
             &Start { t: from, q: &prediction, qd: &scales, qdd: &scales, margin, weights: &prepared.weights },
             (&prediction, all),

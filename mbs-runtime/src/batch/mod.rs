@@ -146,7 +146,7 @@ where
     fn together(&mut self, [from, to]: [Lanes<R, L>; 2], t: &[R; L]) -> Option<LaneMask<R, L>> {
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
-        let trial = FastStep::of(mechanism, parameters, &start, to, !self.waits);
+        let trial = FastStep::of::<S, M, false>(mechanism, parameters, &start, to, !self.waits);
         if !Lanes::<R, L>::all(trial.quick) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;

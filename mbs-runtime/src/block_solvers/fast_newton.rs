@@ -1,6 +1,9 @@
 //! Newton's method without safeguards, for steps close to a regular position; the caller checks the result.
+//!
+//! Circles and lines take second derivatives where the prediction is so far from its root that Newton's method would evaluate thrice.
 
 use crate::block_solvers::convergence::{own_rounding, required};
+use crate::block_solvers::root_step::to_root;
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::redundant_widths::Widths;
 use crate::linear_algebra::vectors::{select, weights as reciprocals};
@@ -16,7 +19,9 @@ const EVALUATIONS: u32 = 5;
 ///
 /// The caller judges the result. It is a solution in the lanes of [`closed`](Self::closed), but its assembly and its margin were
 /// not checked during the iteration. A lane that does not close stays and delays no other one.
-pub(crate) struct FastNewton<T: Scalar> {
+///
+/// `FAR`: circles and lines step by second derivatives, in one lane.
+pub(crate) struct FastNewton<T: Scalar, const FAR: bool = false> {
     /// Lanes in which every block has closed so far.
     pub closed: T::Mask,
     /// Evaluations of residual and Jacobian, the most of any block and lane.
@@ -31,7 +36,7 @@ pub(crate) struct FastNewton<T: Scalar> {
     pub row_alone: u16,
 }
 
-impl<T: Scalar> FastNewton<T> {
+impl<T: Scalar, const FAR: bool> FastNewton<T, FAR> {
     /// Before the first block; lanes outside `lanes` are left as they are and cost nothing.
     #[inline(always)]
     pub fn new(lanes: T::Mask) -> Self {
@@ -99,13 +104,15 @@ impl<T: Scalar> FastNewton<T> {
         x
     }
 
-    /// [`solve`](BlockSolver::solve) in one lane, with the rarely needed code kept apart.
+    /// [`solve`](BlockSolver::solve) in one lane, with the rarely needed code kept apart; `second`: second derivatives of
+    /// circles and lines.
     #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
     fn solve_alone<const K: usize, F: Factorization<T, K>>(
         &mut self,
         block: &Block<T, K>,
         mut x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        second: Option<&[T; K]>,
     ) -> [T; K] {
         let own = block.row_scales.map(own_rounding);
         let (mut residuals, mut jacobian) = evaluate(&x);
@@ -123,7 +130,10 @@ impl<T: Scalar> FastNewton<T> {
                     break;
                 }
             }
-            let step = F::newton_step(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
+            let step = match second {
+                Some(second) => to_root::<T, K, F>(block, &jacobian, &residuals, second),
+                None => F::newton_step(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales),
+            };
             for (component, change) in x.iter_mut().zip(&step) {
                 *component = *component - *change;
             }
@@ -137,8 +147,9 @@ impl<T: Scalar> FastNewton<T> {
     }
 }
 
-impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
+impl<T: Scalar, const FAR: bool> BlockSolver<T> for FastNewton<T, FAR> {
     const INLINED_PER_BLOCK: bool = true;
+    const SECOND_ORDER: bool = FAR && T::LANES == 1;
 
     #[inline(always)]
     fn solve<const K: usize, F: Factorization<T, K>>(
@@ -148,9 +159,21 @@ impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
         evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
         let x = match T::LANES {
-            1 => self.solve_alone::<K, F>(block, x, evaluate),
+            1 => self.solve_alone::<K, F>(block, x, evaluate, None),
             _ => self.solve_lanes::<K, F>(block, x, evaluate),
         };
+        (x, T::per_lane(|_| Outcome::Converged))
+    }
+
+    #[inline(always)]
+    fn solve_round<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        second: &[T; K],
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let x = self.solve_alone::<K, F>(block, x, evaluate, Some(second));
         (x, T::per_lane(|_| Outcome::Converged))
     }
 
@@ -200,7 +223,7 @@ fn worst_granted<T: Scalar, const K: usize>(
     if !all_within(&residuals, &whole) {
         return (T::constant(2.0), 0);
     }
-    let mut worst = FastNewton::new(T::mask(true));
+    let mut worst = FastNewton::<T>::new(T::mask(true));
     worst.record(&rows, &residuals, &reciprocals(&whole));
     (worst.ratio, worst.row_alone)
 }

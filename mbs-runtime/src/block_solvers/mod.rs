@@ -11,4 +11,5 @@ pub(crate) mod multistart;
 pub(crate) mod newton;
 #[cfg(test)]
 mod newton_tests;
+mod root_step;
 pub(crate) mod trace;

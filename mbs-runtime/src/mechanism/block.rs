@@ -28,6 +28,8 @@ pub trait BlockSolver<T: Scalar> {
     /// with the point that it evaluated last. `false` shares one instance through a loop, which computes the same and calls the
     /// evaluation.
     const INLINED_PER_BLOCK: bool = false;
+    /// `true` for a solver whose steps take second derivatives of the rows: [`solve_round`](Self::solve_round).
+    const SECOND_ORDER: bool = false;
 
     /// Finds `x` with residual 0 from the start value `x`; `evaluate` gives residual and Jacobian (rows).
     ///
@@ -38,6 +40,21 @@ pub trait BlockSolver<T: Scalar> {
         x: [T; K],
         evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>);
+
+    /// As [`solve`](Self::solve), for a dyad of circles and lines, whose second derivatives are the same in all directions:
+    /// (Φ_q s)_q s = k |s|² along a step s (K), with k = `second`, K.
+    ///
+    /// Asked of solvers of [`SECOND_ORDER`](Self::SECOND_ORDER) alone; this default leaves the second derivatives out.
+    #[inline(always)]
+    fn solve_round<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        _second: &[T; K],
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.solve::<K, F>(block, x, evaluate)
+    }
 
     /// As [`solve`](Self::solve), for a block that decides branches of the text: `holds` says where they hold at `x`.
     ///

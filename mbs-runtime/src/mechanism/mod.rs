@@ -333,6 +333,8 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
     type Group: Kinematic<Self::GroupNumber, N, M>;
     /// `true` if [`solve_motion`](Self::solve_motion) goes block by block, so that steps gain from it.
     const BLOCK_BY_BLOCK: bool = false;
+    /// `true` if dyads are circles and lines, whose second derivatives a step takes: [`BlockSolver::solve_round`].
+    const HAS_CIRCLES: bool = false;
 
     /// The designs in the lanes from `first` on.
     fn group(&self, first: usize) -> Self::Group;

@@ -87,9 +87,9 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
     ///
     /// Not plain is a step from or into the singular zone, one too long to be foreseen, and one that does not converge or is not
     /// finite. Nor is one that ends so far from the prediction that it may be in another assembly, violates a branch or leaves a
-    /// limit, nor any outside `lanes`. A passage is plain here.
+    /// limit, nor any outside `lanes`. A passage is plain here. `FAR`: see [`FastNewton`].
     #[inline(always)]
-    pub(crate) fn of<S: Kinematic<T, N, M>, const M: usize>(
+    pub(crate) fn of<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
         mechanism: &S,
         parameters: &S::Parameters,
         start: &Start<'_, T, N>,
@@ -99,12 +99,12 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         let scales = mechanism.coordinate_scales(parameters);
         let [most_second, _] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let (prediction, foreseen) = start.predicted(t, &scales, most_second);
-        Self::from_prediction((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
+        Self::from_prediction::<S, M, FAR>((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
     }
 
     /// The step from its prediction, and the lanes where its second-order term is small. Of `start` margin and weights are read alone.
     #[inline(always)]
-    pub(crate) fn from_prediction<S: Kinematic<T, N, M>, const M: usize>(
+    pub(crate) fn from_prediction<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
         (mechanism, parameters): (&S, &S::Parameters),
         start: &Start<'_, T, N>,
         (prediction, foreseen): (&[T; N], T::Mask),
@@ -118,7 +118,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         // one judge would be copied.
         if S::BLOCK_BY_BLOCK && (T::LANES == 1 || size_of::<T>() <= REGISTER) {
             let zeros = [T::constant(0.0); N];
-            let (mut motion, mut solver) = ([*prediction, zeros, zeros], FastNewton::new(lanes));
+            let (mut motion, mut solver) = ([*prediction, zeros, zeros], FastNewton::<T, FAR>::new(lanes));
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
             if T::all(if T::LANES == 1 { solved.ordered } else { solved.ordered | !lanes }) {
                 let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
@@ -127,27 +127,33 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
             }
             // The addresses of copies.
             let (prediction, t, foreseen) = (*prediction, t, foreseen);
-            return Self::by_stages((mechanism, parameters), start, (&prediction, foreseen), &t, lanes);
+            return Self::by_stages::<S, M, FAR>(
+                (mechanism, parameters),
+                start,
+                (&prediction, foreseen),
+                &t,
+                lanes,
+            );
         }
-        Self::in_stages((mechanism, parameters), start, (prediction, foreseen), t, lanes)
+        Self::in_stages::<S, M, FAR>((mechanism, parameters), start, (prediction, foreseen), t, lanes)
     }
 
     /// [`in_stages`](Self::in_stages), out of the way.
     #[cold]
     #[inline(never)]
-    fn by_stages<S: Kinematic<T, N, M>, const M: usize>(
+    fn by_stages<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
         mechanism: (&S, &S::Parameters),
         start: &Start<'_, T, N>,
         prediction: (&[T; N], T::Mask),
         t: &T,
         lanes: T::Mask,
     ) -> Self {
-        Self::in_stages(mechanism, start, prediction, *t, lanes)
+        Self::in_stages::<S, M, FAR>(mechanism, start, prediction, *t, lanes)
     }
 
     /// The step from its prediction, all positions before all rates; with pivoting where a block asks for it.
     #[inline(always)]
-    fn in_stages<S: Kinematic<T, N, M>, const M: usize>(
+    fn in_stages<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
         (mechanism, parameters): (&S, &S::Parameters),
         start: &Start<'_, T, N>,
         (prediction, foreseen): (&[T; N], T::Mask),
@@ -156,7 +162,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
     ) -> Self {
         let [_, most_way] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let most_way = T::constant(most_way);
-        let (mut q, mut solver) = (*prediction, FastNewton::new(lanes));
+        let (mut q, mut solver) = (*prediction, FastNewton::<T, FAR>::new(lanes));
         // By reference: what is long would be moved out of the pairs.
         let (_, position) = &mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
         let (factors, margin) = &mechanism.factorize(parameters, position);
@@ -252,7 +258,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
 }
 
 /// Data by which a step is judged.
-struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> {
+struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize, const FAR: bool> {
     mechanism: &'a S,
     parameters: &'a S::Parameters,
     start: &'a Start<'a, T, N>,
@@ -261,10 +267,12 @@ struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usiz
     foreseen: T::Mask,
     /// Largest distance from the prediction, over the margin, that needs no further test.
     most_way: T,
-    solver: FastNewton<T>,
+    solver: FastNewton<T, FAR>,
 }
 
-impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_, S, T, N, M> {
+impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize, const FAR: bool>
+    Judge<'_, S, T, N, M, FAR>
+{
     /// The step that ends at `motion` (q, q̇, q̈), with its tests; `sum`: finite where rates and factors are.
     #[inline(always)]
     fn judged(

@@ -12,6 +12,7 @@ use crate::stepper::Stepper;
 use crate::stepper::fast_step::{FastStep, Judgement, Start, quick};
 use crate::stepper::instant::{Predecessor, Rates, SolvedPosition};
 use crate::stepper::state::StepperState;
+use crate::tolerances::positions;
 
 /// Distance from the prediction over the margin up to which a step needs no test.
 #[inline(always)]
@@ -23,12 +24,29 @@ fn approach<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>() ->
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     #[inline(always)]
     pub(super) fn advanced(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
+        // As far as the last position was from its prediction the next one will be.
+        if const { S::HAS_CIRCLES } && positions::SHORT.of::<R>().to_f64() < self.state.statistics.correction
+        {
+            return self.advanced_far(t, phases);
+        }
+        self.advanced_by::<false>(t, phases)
+    }
+
+    /// [`advanced`](Self::advanced) to a position so far from its prediction that circles and lines step by second derivatives.
+    #[inline(never)]
+    fn advanced_far(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
+        self.advanced_by::<true>(t, phases)
+    }
+
+    #[inline(always)]
+    fn advanced_by<const FAR: bool>(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
         // Rows that may contradict each other are always looked at.
         if const { M == N } && self.is_ready() && !self.waits() {
             let StepperState { q, qd, qdd, margin, .. } = &self.state;
             let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
             let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
-            let trial = FastStep::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
+            let trial =
+                FastStep::of::<S, M, FAR>(&self.mechanism, &self.parameters, &start, t, R::mask(true));
             // The homotopy decides what a passage leads to.
             if trial.orientation(0) == self.state.orientation {
                 if trial.quick && !self.may_have_folded() {

@@ -17,6 +17,9 @@ pub(crate) const LOOSEST: Law = Law::at_least(2.5e-7, 64.0);
 /// sum that it enters.
 pub(crate) const OF_COORDINATES: Law = Law::ulps(4.0);
 
+/// Step of a point's coordinates over their scale whose square is within [`OF_TERMS`], that of two of them too: 2 · 25 ε.
+pub(crate) const SHORT: Law = Law::root(5.0);
+
 /// A point is stationary where ‖Jᵀr‖² ≤ this times ‖J‖² ‖r‖²: the residual can fall there by no more than √ε of itself.
 pub(crate) const STATIONARY: Law = Law::ulps(1e-4);
 

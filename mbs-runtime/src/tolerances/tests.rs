@@ -75,6 +75,7 @@ const VALUES: &[(&str, Law, f64, f32)] = &[
 
 /// Multiples of √ε.
 const ROOTS: &[(&str, Law, f64)] = &[
+    ("short", positions::SHORT, 5.0),
     ("jump", positions::JUMP, 1.0),
     ("fit", positions::OF_FIT, 1.0),
     ("least margin", singular::LEAST_MARGIN, 32.0),

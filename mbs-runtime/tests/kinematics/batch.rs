@@ -245,7 +245,9 @@ where
         for ((found, stepper), t) in found.iter().zip(&mut alone).zip(times) {
             let expected = stepper.advance_to(t).expect("it moves on");
             let found = found.as_ref().expect("it moves on");
-            assert_eq!(found.evaluations, expected.evaluations, "step {k}");
+            // Circles and lines step by second derivatives alone, as lanes by Newton's method, which may evaluate once more.
+            let more = found.evaluations.checked_sub(expected.evaluations);
+            assert!(more == Some(0) || (S::HAS_CIRCLES && more == Some(1)), "step {k}: {more:?}");
         }
     }
     for (lane, alone) in alone.iter().enumerate() {

@@ -126,6 +126,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, 
     type Group = Self;
 
     const BLOCK_BY_BLOCK: bool = S::BLOCK_BY_BLOCK;
+    const HAS_CIRCLES: bool = S::HAS_CIRCLES;
 
     fn group(&self, _: usize) -> Self {
         self.clone()

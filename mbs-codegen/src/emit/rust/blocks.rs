@@ -63,7 +63,7 @@ fn newton(
     scope: &Scope<'_>,
     text: &mut String,
 ) {
-    let System { section, kept, phi, phi_q, branches, branch_section, dyad, .. } = system;
+    let System { section, kept, phi, phi_q, branches, branch_section, dyad, curvature, .. } = system;
     let inner = Scope { unknowns: &block.coordinates, ..*scope };
     let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
     let size = block.coordinates.len();
@@ -89,7 +89,18 @@ fn newton(
         (None, true) => format!("solve::<{size}, {factors}>"),
         (None, false) => format!("solve_branched::<{size}, {factors}>"),
     };
-    let call = format!("let (__x, __block) = __solver.{method}");
+    *text += "let (__x, __block) = ";
+    if let Some((second, section)) = curvature {
+        *text += "if const { __S::SECOND_ORDER } {\n";
+        lets(section, scope, text);
+        let second = list(second.iter().map(|id| scope.or_zero(*id)));
+        let _ = writeln!(
+            text,
+            "__solver.solve_round::<{size}, {factors}>(&{description}, {starts}, \
+             #[inline(always)] |__x| __evaluate(__x), &{second})\n}} else {{"
+        );
+    }
+    let call = format!("__solver.{method}");
     let rows = list(block.rows.iter().map(usize::to_string));
     let widths = if surplus { widths(scope.model, &rows) } else { String::new() };
     let _ = write!(text, "{call}(&{description}, {widths}{starts}, #[inline(always)] |__x| {EVALUATED}");
@@ -107,7 +118,7 @@ fn newton(
         lets(section, scope, text);
         let _ = writeln!(text, "{}\n}}", formula(dyad, &mut |id| scope.operand(id)));
     }
-    *text += ");\n";
+    *text += if curvature.is_some() { ")\n};\n" } else { ");\n" };
     if !kept.is_empty() {
         *text += "let mut __values = __kept.get();\n\
                   if !__S::INLINED_PER_BLOCK && !__mbs::__private::is_same(&__values.0, &__x) {\n\

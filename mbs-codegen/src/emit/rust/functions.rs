@@ -74,6 +74,8 @@ pub struct Bodies {
     pub solve_blocks: Option<TokenStream>,
     /// Body of `solve_motion`, where it differs from the functions above in sequence.
     pub solve_motion: Option<TokenStream>,
+    /// `true` if a step takes second derivatives of dyads of circles and lines.
+    pub has_circles: bool,
     /// Functions of bounded length that a long solution calls.
     pub methods: TokenStream,
     /// Those that other long functions call.
@@ -209,6 +211,7 @@ pub fn bodies(
         solve_with_position: block(&solve_with_position, runtime),
         solve_blocks: solve_blocks.map(|text| block(&text, runtime)),
         solve_motion: solve_motion.map(|text| block(&text, runtime)),
+        has_circles: structure.blocks.iter().any(|block| block.curvature.is_some()),
         methods: tokens(&methods, runtime),
         parts: tokens(&emitter.parts, runtime),
         factorize: block(&linear.factorize, runtime),

@@ -326,6 +326,8 @@ fn kinematic(
     });
     let block_by_block =
         solve_motion.as_ref().map(|_| quote! { const BLOCK_BY_BLOCK: ::core::primitive::bool = true; });
+    let has_circles =
+        bodies.has_circles.then(|| quote! { const HAS_CIRCLES: ::core::primitive::bool = true; });
     quote! {
         impl<#generics> #runtime::WorstCase for #name {
             const WORK: #runtime::Work = #work;
@@ -333,6 +335,7 @@ fn kinematic(
         impl<#generics> #runtime::Kinematic<T, #sizes> for #name {
             type Factors = __Factors<T>;
             #block_by_block
+            #has_circles
             #group
             #[inline]
             fn solve_blocks<__S: #runtime::BlockSolver<T>>(

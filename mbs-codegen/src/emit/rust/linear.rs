@@ -11,7 +11,7 @@ use crate::emit::rust::long::factorization::{Factorizations, Rounds};
 use crate::emit::rust::long::substitution::{Substitution, substitution};
 use crate::emit::rust::long::{self, BlockKind};
 use crate::emit::rust::matrix_entries::{MatrixEntries, unknown};
-use crate::emit::rust::scope::{Scope, quotient};
+use crate::emit::rust::scope::{Scope, number, quotient};
 use crate::equations::Equations;
 use crate::program::{BlockMethod, BlockProgram, Program, System};
 use crate::symbolic::NodeId;
@@ -142,7 +142,11 @@ pub fn diagonal(
     let (equations, scope) = (entries.equations, entries.scope);
     let size = block.rows.len();
     let rows = list(system.phi_q.iter().map(|row| list(row.iter().map(|id| entries.of_block(*id)))));
-    let scale = |scales: &[NodeId], index: &usize| scope.or_zero(scales.get(*index).copied());
+    let one = has_one_metric(block, equations);
+    let scale = |scales: &[NodeId], index: &usize| match one {
+        true => number(1.0),
+        false => scope.or_zero(scales.get(*index).copied()),
+    };
     let row_scales = list(block.rows.iter().map(|row| scale(&equations.row_scales, row)));
     let scales = list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c)));
     let (row, coordinate) = (block.rows.first().unwrap_or(&0), block.coordinates.first().unwrap_or(&0));
@@ -190,6 +194,18 @@ pub fn diagonal(
         let _ = writeln!(text, "let __margin{index} = __value;");
     }
     Diagonal { index, kind, text, asked }
+}
+
+/// `true` if all rows of a closed form have one scale and all coordinates another: its margin is that without them.
+fn has_one_metric(block: &BlockProgram, equations: &Equations) -> bool {
+    let are_equal = |scales: &[NodeId], indices: &[usize]| {
+        let mut scales = indices.iter().map(|index| scales.get(*index));
+        scales.next().is_none_or(|first| scales.all(|scale| scale == first))
+    };
+    matches!(block.rows.len(), 2 | 3)
+        && !block.has_surplus()
+        && are_equal(&equations.row_scales, &block.rows)
+        && are_equal(&equations.coordinate_scales, &block.coordinates)
 }
 
 /// Declaration and body: blocks of one kind as `rounds`, others a field each.
