@@ -22,6 +22,7 @@ pub mod car_axis;
 pub mod cart_pole;
 pub mod desmo;
 pub mod determinant_guide;
+pub mod door_with_closer;
 pub mod double_parallelogram;
 pub mod double_pendulum;
 mod elliptic;
@@ -55,7 +56,9 @@ pub mod slider_crank_mass;
 pub mod slider_crank_scenes;
 pub mod stephenson;
 pub mod three_rrr;
+pub mod valve_spring;
 pub mod watt;
+pub mod woodpecker;
 
 #[cfg(test)]
 mod closed_form;
@@ -116,6 +119,9 @@ pub static CATALOGUE: Catalogue = Catalogue {
         governor::CARD,
         slider_crank_engine::CARD,
         bouncing_balls::CARD,
+        valve_spring::CARD,
+        door_with_closer::CARD,
+        woodpecker::CARD,
         slider_crank_mass::RELEASED,
         four_bar_mass::RELEASED,
     ],

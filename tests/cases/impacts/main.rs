@@ -7,4 +7,3 @@ mod cradle;
 mod disk;
 mod random;
 mod rod;
-mod woodpecker;
