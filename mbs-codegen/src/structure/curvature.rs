@@ -5,8 +5,8 @@ use crate::equations::Equations;
 use crate::symbolic::substitute::substitute;
 use crate::symbolic::{Graph, Leaf, NodeId, tangent};
 
-/// Before: rows of a block, its coordinates, and the dyad that it is. After: of each row the factor k of (Φ_q s)_q s = k |s|² along a
-/// step s, where it is one of circles and lines; `None` in its place is a structural zero.
+/// Second derivatives of the rows of a dyad of circles and lines: of each row the factor k of (Φ_q s)_q s = k |s|² along any step s of
+/// the block's coordinates. A row's `None` is a structural zero; other dyads have no such factors.
 pub fn curvature(
     equations: &mut Equations,
     rows: &[usize],

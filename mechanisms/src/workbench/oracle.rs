@@ -96,7 +96,7 @@ fn interpreted_texts_agree_with_emitted_code() {
             Err(gap) => gaps.push(format!("{}: {gap}", card.name())),
         }
     }
-    // Functions of the caller are in no text, and modes of rigid contacts in no state.
+    // Functions of the caller are in no text. Modes of rigid contacts and values of events are in no state.
     let is_known = |gap: &String| {
         ["the caller's function", "contact with a restitution", "event"]
             .iter()
