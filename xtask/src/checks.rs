@@ -7,10 +7,9 @@ use crate::{browser, costs, documents, fuzz, growth, instructions, lines, plante
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 7] = [
+const LONG: [(&str, &str); 6] = [
     ("mbs-motions", ""),
     ("mbs-cases", "friction"),
-    ("mbs-cases", "kinematics"),
     ("mbs-cases", "laws"),
     ("mechanisms", "effects"),
     ("mbs-tests", "proofs"),
@@ -66,6 +65,8 @@ pub fn full() -> Result<(), String> {
         let only = if test.is_empty() { &[][..] } else { &only };
         step(command("cargo", &["test", "-p", package, "--features", "long"]).args(only))?;
     }
+    // The stack of optimised code.
+    step(&mut command("cargo", &["test", "--release", "-p", "mbs-motions", "--test", "stiff", "of_stack"]))?;
     browser::run()?;
     documents::book()?;
     documents::package()?;

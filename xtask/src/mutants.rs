@@ -78,7 +78,7 @@ const AREAS: [Area; 7] = [
             &["-p", "mbs-runtime", "--lib"],
             &["-p", "mbs-runtime", "--test", "dynamics"],
             &["-p", "mbs-runtime", "--test", "kinematics"],
-            &["-p", "mbs-cases", "--test", "singular"],
+            &["-p", "mbs-motions", "--test", "singular"],
         ],
     },
     Area {

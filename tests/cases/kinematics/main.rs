@@ -1,23 +1,7 @@
-//! Positions, velocities and accelerations: assemblies kept, accuracy near singular positions, refusals.
+//! Accelerations at small margins, rates at late times, singular positions, redundant rows.
 
-mod linkages;
-
-mod k1_assemblies_are_kept;
-mod k1_dead_centres;
-mod k1_inputs_that_turn;
-mod k1_points_at_rest;
-#[cfg(feature = "long")]
-mod k1_redundant_rows;
-mod k1_saved_states;
-mod k1_short_links;
-mod k1_short_links_in_sums;
-mod k1_ways_that_end;
-mod k1_ways_that_fold;
-mod k2_single_precision;
-mod k4_next_to_a_change_point;
 mod k5_accelerations_at_small_margins;
 mod k6_declared_branch_near_a_change_point;
 mod k7_rates_at_late_times;
 mod k7_singular_exactly;
 mod k7_widths_of_redundant_rows;
-mod t8_lanes_begin_at_their_own_values;

@@ -5,9 +5,12 @@
 //!
 //! | code | found by | target |
 //! |---|---|---|
-//! | `k1` to `k8` | kinematics of independent texts, in `f64` and `f32` | `kinematics`; of the language `language` |
+//! | `k1` to `k8` | kinematics of independent texts, in `f64` and `f32` | `kinematics`, `assemblies`; of the language `language` |
 //! | `d1` to `d31` | motions from forces of independent texts | `singular`, `events`, `friction`, `stiff`, `starts`; of the language `language` |
 //! | `t6` to `t8` | a line of the library changed on purpose, which no test noticed | the target of that line |
+//!
+//! The tests of this package are compiled without optimisation, which takes a fifth of the time. Those of very many steps stand in the
+//! optimised package `mbs-motions`: `assemblies`, `singular` and `stiff`.
 //!
 //! The first line of each file says what the fault was. Several files with one code are tests of one class. A fault without a file of its own is
 //! tested with the one with which it was found, or in tests of the changed code.

@@ -74,33 +74,6 @@ fn blocks_on_each_other_move_as_the_closed_form() {
 }
 
 mechanism! {
-    /// Four brakes on one slide, that a force pulls: their rows follow from each other.
-    pub mechanism Brakes;
-    coord x: m = 0.3;
-    body slide { mass: 1kg, com: [x, 0] }
-    for i in 0..4 { friction brake { along: x, normal: (1 + i)*10N, coefficient: 0.1, sticks: 0.2 } }
-    force pull: 1 [N/s]*t on x;
-    out forces: [N; 4] = [force(brake[0]), force(brake[1]), force(brake[2]), force(brake[3])];
-}
-
-#[test]
-fn brakes_share_a_force_in_proportion_to_their_limits() {
-    let method = Explicit::new(DormandPrince8, Projection::default());
-    let mut run = Simulation::start_from_text(Brakes::default(), method, 0.0_f64).expect("it starts");
-    run.advance_to(19.0).expect("they hold");
-    assert!((run.q()[0] - 0.3).abs() < 1e-15, "{:?}", run.instant());
-    let forces = run.loads();
-    for (force, limit) in forces.iter().zip([2.0, 4.0, 6.0, 8.0]) {
-        assert!((force + 19.0 * limit / 20.0).abs() < 1e-6, "{forces:?}");
-    }
-    assert!((forces.iter().sum::<f64>() + 19.0).abs() < 1e-9, "{forces:?}");
-    run.advance_to(21.0).expect("they slide");
-    // From 20 s on ẍ = t − 10.
-    let exact = 0.3 + 10.0 * 0.5 + 1.0 / 6.0;
-    assert!((run.q()[0] - exact).abs() < 1e-8, "{:?} {exact}", run.instant());
-}
-
-mechanism! {
     /// Six blocks in a row, joined by springs: let go stretched, they slide, stick, and come to rest one by one.
     pub mechanism Chain;
     coord x: [m; 6] = [0, 0.9, 2.3, 3.1, 4.6, 5.4];

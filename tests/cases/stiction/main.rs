@@ -7,6 +7,5 @@ mod bounces;
 mod bristles;
 mod contacts;
 mod pendulum;
-mod random;
 mod refusals;
 mod slope;

@@ -19,8 +19,9 @@ mechanism! {
 
 #[test]
 fn the_largest_mechanism_that_compiles_runs_on_four_megabytes_of_stack() {
-    /// Bytes: the matrices of a step, and as much for the data that they are computed from.
-    const STACK: usize = 4 << 20;
+    /// Bytes: the matrices of a step, and as much for the data that they are computed from. Without optimisation, which this package does
+    /// not do for the crates that it stands on, matrices are copied on the way.
+    const STACK: usize = if cfg!(debug_assertions) { 8 << 20 } else { 4 << 20 };
     let run = || {
         let mut run = Simulation::start_from_text(Bobs::default(), radau(), 0.0_f64).expect("it starts");
         run.advance_to(1.0).expect("they fall");
@@ -29,7 +30,7 @@ fn the_largest_mechanism_that_compiles_runs_on_four_megabytes_of_stack() {
     let height = std::thread::Builder::new().stack_size(STACK).spawn(run).expect("a thread").join();
     let matrices = Radau5::stack::<Bobs, f64, 120, 0>();
     println!("stack of a stiff step of 120 coordinates: {matrices} B of {STACK} B");
-    assert!((height.expect("it runs") + 0.5 * 9.81).abs() < 1e-8 && 2 * matrices < STACK);
+    assert!((height.expect("it runs") + 0.5 * 9.81).abs() < 1e-8 && 2 * matrices < 4 << 20);
 }
 
 mechanism! {
