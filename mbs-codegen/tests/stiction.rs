@@ -62,6 +62,37 @@ fn code_grows_in_proportion_to_the_number_of_rigid_contacts() {
     }
 }
 
+/// Blocks above a floor, the first `count` of them with a rigid contact and friction on it.
+fn rubbing(count: usize) -> String {
+    let mut text = String::from(
+        "/// Blocks in a row.\npub mechanism Row;\ncoord p: [m; 24, 2] = 1;\nfor i in 0..24 { body block { mass: 1kg, com: p[i] } }\n",
+    );
+    for index in 0..count {
+        text += &format!(
+            "contact floor{index} {{ gap: p[{index}, 1], restitution: 0.5 }}\n\
+             friction rub{index} {{ along: p[{index}, 0], normal: normal(floor{index}), coefficient: 0.2, sticks: 0.3, speed: 0.1 }}\n\
+             out blow{index}: N*s = impulse(floor{index});\n"
+        );
+    }
+    text
+}
+
+#[test]
+fn code_grows_in_proportion_to_the_number_of_frictions_on_rigid_contacts() {
+    let expand = |count: usize| mbs_codegen::expand_source(&rubbing(count)).expect("it expands");
+    let [none, one, four, twelve, all] = [0, 1, 4, 12, 24].map(|count| tokens(expand(count)));
+    let each = |more: usize, less: usize, count: usize| (more - less) as f64 / count as f64;
+    let first = each(one, none, 1);
+    let (few, some, many) = (each(four, one, 3), each(twelve, four, 8), each(all, twelve, 12));
+    assert!(few <= first && some <= 1.02 * few && few <= 1.02 * some, "{first} {few} {some}");
+    // From 19 contacts on forces and powers are long functions, whose parts have heads: 7 % more tokens.
+    assert!(many <= 1.1 * few && few <= 1.02 * many, "{few} {many}");
+    let plain = expand(0).to_string();
+    for word in ["SET_VALUED", "HAS_RIGID_CONTACTS", "HAS_FRICTION_ON_CONTACTS", "Grip", "OnContact"] {
+        assert!(!plain.contains(word) && expand(1).to_string().contains(word), "{word}");
+    }
+}
+
 #[test]
 fn wrong_rigid_contacts_are_named() {
     let said = |contacts: &str| {

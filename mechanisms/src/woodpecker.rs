@@ -73,6 +73,7 @@ mechanism! {
     effect beak {
         contact beak { gap: 2.4mm - 20mm*b, restitution: 0.5 }
         out distance: m = gap(beak);
+        out blow: N*s = impulse(beak);
     }
     effect sleeve {
         contact low { gap: 0.6mm + 5.8mm*a, restitution: 0 }

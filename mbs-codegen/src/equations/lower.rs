@@ -85,6 +85,7 @@ impl Clock {
             | Leaf::Multiplier(_)
             | Leaf::Sliding(_)
             | Leaf::Holding(_)
+            | Leaf::Impulse(_)
             | Leaf::Remembered(_)
             | Leaf::Direction(_)
             | Leaf::Given(..) => 2,
@@ -150,6 +151,7 @@ fn expressions(model: &Model, clock: &Clock, g: &mut Graph) -> Vec<NodeId> {
             expression::Node::Multiplier(i) => g.leaf(Leaf::Multiplier(i as u32)),
             expression::Node::Sliding(i) => g.leaf(Leaf::Sliding(i as u32)),
             expression::Node::Holding(i) => g.leaf(Leaf::Holding(i as u32)),
+            expression::Node::Impulse(i) => g.leaf(Leaf::Impulse(i as u32)),
             expression::Node::Remembered(i) => g.leaf(Leaf::Remembered(i as u32)),
             expression::Node::Pin(pin, component) => g.leaf(Leaf::Given(PIN, (2 * pin + component) as u32)),
             expression::Node::Unary(function, a) => g.unary(function, of(a)),

@@ -55,7 +55,7 @@ impl Resolver<'_> {
         let dynamics = self.dynamics();
         let force_index = dynamics.forces.len();
         dynamics.contacts.push(Contact { name: full.clone(), force: force_index, gap, bound, span });
-        self.names.seen.define(&name.text, Seen::Contact { gap, force });
+        self.names.seen.define(&name.text, Seen::Contact { gap, force, rigid: None });
         self.force(name, full, Action::Work(vec![(force, gap)]));
         Ok(())
     }
@@ -84,7 +84,7 @@ impl Resolver<'_> {
         dynamics.signed.push(NonNegative { field, least: Least::Zero, of, value: rest, span });
         let law = SetValued::Contact { restitution, ordered: given.has("simultaneous") };
         dynamics.sticking.push(Sticking { name: full.clone(), along: gap, law, span });
-        self.names.seen.define(&name.text, Seen::Contact { gap, force });
+        self.names.seen.define(&name.text, Seen::Contact { gap, force, rigid: Some(index) });
         self.force(name, full, Action::Work(vec![(force, gap)]));
         Ok(())
     }

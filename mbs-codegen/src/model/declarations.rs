@@ -7,6 +7,7 @@ use proc_macro2::Span;
 use super::Model;
 use super::bare_angles::is_of_angles;
 use super::elaborator::Elaborator;
+use super::event_rounds::is_of_events;
 use super::initialiser::{definition, in_unit, initialiser, numbers};
 use super::late_lets::late_lets;
 use super::names::Names;
@@ -38,14 +39,18 @@ pub fn declare(
         }
     }
     for statement in &in_loops {
-        if let StatementKind::Let { name, .. } | StatementKind::For(Loop { variable: name, .. }) =
-            &statement.kind
-        {
-            work.names.declare_in_loop(name);
+        match &statement.kind {
+            StatementKind::Let { name, .. } | StatementKind::For(Loop { variable: name, .. }) => {
+                work.names.declare_in_loop(name);
+            }
+            StatementKind::Event { name, .. } | StatementKind::Latch { name, .. } => {
+                work.names.declare(name, work.diagnostics);
+            }
+            _ => {}
         }
     }
     work.constants(&top);
-    work.give_up(&top, |kind| matches!(kind, StatementKind::Const { .. }));
+    work.give_up(top.iter().copied(), |kind| matches!(kind, StatementKind::Const { .. }));
     for statement in &top {
         let docs = statement.docs.clone();
         match &statement.kind {
@@ -57,7 +62,7 @@ pub fn declare(
             _ => {}
         }
     }
-    work.give_up(&top, |kind| {
+    work.give_up(top.iter().copied(), |kind| {
         matches!(
             kind,
             StatementKind::Param { .. } | StatementKind::Input { .. } | StatementKind::Function { .. }
@@ -68,13 +73,13 @@ pub fn declare(
             work.coordinate(name, statement.docs.clone(), kind, guess.as_ref());
         }
     }
-    work.give_up(&top, |kind| matches!(kind, StatementKind::Coord { .. }));
+    work.give_up(top.iter().copied(), |kind| matches!(kind, StatementKind::Coord { .. }));
     for statement in &top {
         if let StatementKind::State { name, kind, value } = &statement.kind {
             work.state(name, kind, value.as_ref());
         }
     }
-    work.give_up(&top, |kind| matches!(kind, StatementKind::State { .. }));
+    work.give_up(top.iter().copied(), |kind| matches!(kind, StatementKind::State { .. }));
     if let Some(beyond) = work.model.coordinates.get(MOST_COORDINATES) {
         let message = format!("the mechanism has more than {MOST_COORDINATES} coordinates");
         work.diagnostics.report(
@@ -83,18 +88,19 @@ pub fn declare(
             "split it: a step keeps a dozen arrays of all coordinates on its stack",
         );
     }
-    for statement in faulty.into_iter().chain(in_loops) {
+    let others = in_loops.into_iter().filter(|statement| !is_of_events(&statement.kind));
+    for statement in faulty.into_iter().chain(others) {
         work.stand_in(statement);
     }
-    work.events(&top);
-    work.give_up(&top, |kind| matches!(kind, StatementKind::Event { .. } | StatementKind::Latch { .. }));
+    work.events(statements);
+    work.give_up(statements, is_of_events);
     let late = late_lets(&top);
     for name in &late {
         work.names.postpone(name);
     }
     work.names.seen.late = late;
     work.lets(&top);
-    work.give_up(&top, |_| true);
+    work.give_up(top.iter().copied(), |_| true);
 }
 
 /// The statements outside loops, and those within one.
@@ -134,8 +140,13 @@ impl Declarations<'_> {
     }
 
     /// Marks names of a kind that got no value.
-    fn give_up(&mut self, top: &[&Statement], kind: impl Fn(&StatementKind) -> bool) {
-        for name in top.iter().filter(|statement| kind(&statement.kind)).filter_map(|s| declared_name(s)) {
+    pub(super) fn give_up<'s>(
+        &mut self,
+        statements: impl IntoIterator<Item = &'s Statement>,
+        kind: impl Fn(&StatementKind) -> bool,
+    ) {
+        let of_kind = statements.into_iter().filter(|statement| kind(&statement.kind));
+        for name in of_kind.filter_map(declared_name) {
             self.names.give_up(&name.text);
         }
     }
@@ -261,9 +272,7 @@ impl Declarations<'_> {
                 (name, Declares::Input { rates: *rates }, Some(kind))
             }
             StatementKind::Coord { name, kind, .. } => (name, Declares::Coord, Some(kind)),
-            StatementKind::State { name, .. }
-            | StatementKind::Event { name, .. }
-            | StatementKind::Latch { name, .. } => (name, Declares::Value, None),
+            StatementKind::State { name, .. } => (name, Declares::Value, None),
             StatementKind::Function { name, .. } => (name, Declares::Function, None),
             StatementKind::Curve { name, .. } => (name, Declares::Value, None),
             _ => return,
@@ -274,13 +283,6 @@ impl Declarations<'_> {
                 format!("`{}` is declared inside a loop", name.text),
                 match declares {
                     Declares::Function => "declare it before the loop",
-                    _ if matches!(
-                        statement.kind,
-                        StatementKind::Event { .. } | StatementKind::Latch { .. }
-                    ) =>
-                    {
-                        "declare one event after the other outside of the loop: their conditions may use any component"
-                    }
                     Declares::Value if matches!(statement.kind, StatementKind::Curve { .. }) => {
                         "declare it before the loop; points in the loop may be on it"
                     }

@@ -186,7 +186,7 @@ pub enum SetValued {
 /// An event, which begins where the first value of a condition exceeds the second, and ends where another condition holds.
 #[derive(Debug)]
 pub struct Event {
-    /// Its name.
+    /// Its name, with its round in a loop.
     pub name: String,
     /// Condition of its begin; none before it is resolved, or where that is faulty.
     pub begins: Option<[Id; 2]>,
@@ -199,14 +199,14 @@ pub struct Event {
 /// A value that an event latches where it begins.
 #[derive(Debug)]
 pub struct Latch {
-    /// Name, with the component's number for arrays.
+    /// Name, with its round in a loop and the component's number for arrays.
     pub name: String,
     /// Unit as written.
     pub unit: String,
     /// Its definition; none before it is resolved, or where that is faulty.
     pub value: Option<Id>,
-    /// Index of the event.
-    pub event: usize,
+    /// Index of the event; none before it is resolved, or where its name is faulty.
+    pub event: Option<usize>,
     /// The declaring token.
     pub span: Span,
 }

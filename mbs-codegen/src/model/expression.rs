@@ -41,6 +41,8 @@ pub enum Node {
     Sliding(usize),
     /// Force along the length with which it sticks; 0 where it slides.
     Holding(usize),
+    /// Impulse of the last impact of a rigid contact, by its index among the set-valued forces.
+    Impulse(usize),
     /// A value that events set: of one that holds 1, otherwise 0; then those that they latch.
     Remembered(usize),
     /// A component of the force of a pin on the first of its bodies, by the pin's index.
@@ -266,6 +268,7 @@ impl Node {
                 | Node::Pin(..)
                 | Node::Sliding(_)
                 | Node::Holding(_)
+                | Node::Impulse(_)
                 | Node::Remembered(_)
         )
     }
@@ -281,6 +284,7 @@ impl Node {
             | Node::Multiplier(_)
             | Node::Sliding(_)
             | Node::Holding(_)
+            | Node::Impulse(_)
             | Node::Remembered(_)
             | Node::Pin(..)
             | Node::Margin(_) => (None, None),

@@ -36,8 +36,8 @@ pub enum Force {
     /// A force along a length; `sliding` is the same without what holds at zero speed, which has no power. `deflection`
     /// is the state of bristles, where it has any.
     Friction { along: Id, force: Id, sliding: Id, deflection: Option<Id> },
-    /// A force along a gap.
-    Contact { gap: Id, force: Id },
+    /// A force along a gap; `rigid` is the index of a rigid one among the set-valued forces.
+    Contact { gap: Id, force: Id, rigid: Option<usize> },
     /// A force or torque as written, and its components with the displacement of each.
     Load { value: Value, pairs: Vec<(Id, Id)> },
 }

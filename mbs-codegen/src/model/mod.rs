@@ -20,6 +20,7 @@ pub mod elaborate;
 pub mod elaborator;
 pub mod element_fields;
 mod event;
+mod event_rounds;
 pub mod expression;
 pub mod forces_by_name;
 mod friction;

@@ -31,6 +31,7 @@ impl Elaborator<'_> {
                     | Node::Ratio(..)
                     | Node::Sliding(_)
                     | Node::Holding(_)
+                    | Node::Impulse(_)
                     | Node::Remembered(_)
             )
         };

@@ -163,7 +163,7 @@ impl Resolver<'_> {
             StatementKind::Rate { state, rate, span } => self.rate_of_state(state, rate, *span),
             StatementKind::Let { name, unit, value } => self.late_let(name, unit.as_ref(), value),
             StatementKind::Event { name, begins, ends } => self.event(name, begins, ends),
-            StatementKind::Latch { name, value, .. } => self.latch(name, value),
+            StatementKind::Latch { name, value, event, .. } => self.latch(name, value, event),
             _ => Ok(()),
         }
     }

@@ -1,5 +1,5 @@
-//! Forces that expressions refer to by name: `force(spring)`, `gap(cam)`, `normal(cam)`, `slip(guide)`, `deflection(guide)`,
-//! `power(motor)`.
+//! Forces that expressions refer to by name: `force(spring)`, `gap(cam)`, `normal(cam)`, `impulse(beak)`, `slip(guide)`,
+//! `deflection(guide)`, `power(motor)`.
 
 use proc_macro2::Span;
 
@@ -86,6 +86,10 @@ impl Elaborator<'_> {
         match (function, &force) {
             ("force", _) | ("normal", Force::Contact { .. }) => self.value_of_force(&force, span),
             ("gap", Force::Contact { gap, .. }) => Ok(self.known(*gap, Dimension::METRE, span)),
+            ("impulse", Force::Contact { rigid: Some(index), .. }) => {
+                let impulse = self.expressions.push(Node::Impulse(*index));
+                Ok(self.known(impulse, Dimension::NEWTON.times(Dimension::SECOND), span))
+            }
             ("slip", Force::Friction { along, .. }) => {
                 let rate = self.expressions.push(Node::Rate(*along, 1));
                 Ok(self.known(rate, Dimension::METRE.over(Dimension::SECOND), span))
@@ -94,6 +98,14 @@ impl Elaborator<'_> {
                 Ok(self.known(*state, Dimension::METRE, span))
             }
             ("power", _) => self.power_of_force(&force, span),
+            ("impulse", Force::Contact { .. }) => {
+                let name = &target.name.text;
+                let message = format!("`{name}` has a stiffness and no `impulse`");
+                let help = format!(
+                    "a rigid contact has impacts: leave out `stiffness`; or integrate the force: `state p: N*s; der(p) == force({name});`"
+                );
+                Err(self.fault(target.name.span, message, help))
+            }
             ("deflection", Force::Friction { .. }) => {
                 let name = &target.name.text;
                 let message = format!("`{name}` has no bristles and no `deflection`");
@@ -181,7 +193,7 @@ impl Elaborator<'_> {
                     (None, Some(known)) => format!("did you mean `{known}`?"),
                     (None, None) => {
                         let word = match function {
-                            "gap" | "normal" => "contact",
+                            "gap" | "normal" | "impulse" => "contact",
                             "slip" | "deflection" => "friction",
                             _ => "tsda",
                         };
@@ -238,7 +250,8 @@ impl Elaborator<'_> {
                 let torque = self.spring_force(turn.angle, parts, span)?;
                 vec![(self.push_unary(Unary::Negate, torque, span)?, turn.angle)]
             }
-            Force::Friction { along: place, sliding: force, .. } | Force::Contact { gap: place, force } => {
+            Force::Friction { along: place, sliding: force, .. }
+            | Force::Contact { gap: place, force, .. } => {
                 vec![(*force, *place)]
             }
             Force::Load { pairs, .. } => pairs.clone(),

@@ -209,6 +209,7 @@ impl Picture {
             | Leaf::Direction(_)
             | Leaf::Sliding(_)
             | Leaf::Holding(_)
+            | Leaf::Impulse(_)
             | Leaf::Remembered(_)
             | Leaf::Given(..) => f64::NAN,
         };

@@ -85,6 +85,7 @@ impl Numbers {
                 | Node::Ratio(..)
                 | Node::Sliding(_)
                 | Node::Holding(_)
+                | Node::Impulse(_)
                 | Node::Remembered(_) => {
                     unreachable!("random texts with masses use no `der2`, no pin, no margin and no ratio")
                 }

@@ -150,6 +150,7 @@ fn evaluate(model: &Model, state: &Evaluation, line: Direction) -> Vec<Jet> {
             | Node::Ratio(..)
             | Node::Sliding(_)
             | Node::Holding(_)
+            | Node::Impulse(_)
             | Node::Remembered(_) => {
                 unreachable!("random texts use no pin, no margin and no ratio")
             }

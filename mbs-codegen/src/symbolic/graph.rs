@@ -40,6 +40,8 @@ pub enum Leaf {
     Sliding(u32),
     /// Force with which it sticks, given from outside.
     Holding(u32),
+    /// Impulse of the last impact of a rigid contact: constant within a step, given from outside.
+    Impulse(u32),
     /// Value that events set: constant within a step, given from outside.
     Remembered(u32),
     /// Computed outside, from the position: known with the accelerations.
@@ -149,6 +151,7 @@ impl Graph {
                 | Leaf::Direction(_)
                 | Leaf::Sliding(_)
                 | Leaf::Holding(_)
+                | Leaf::Impulse(_)
                 | Leaf::Remembered(_),
             ) => Stage::Velocity,
             Node::Leaf(Leaf::Acceleration(_) | Leaf::Given(..)) => Stage::Acceleration,

@@ -19,6 +19,7 @@ pub fn scattered(leaf: Leaf, trial: usize) -> f64 {
         Leaf::Sliding(index) => (1 << 40, index),
         Leaf::Holding(index) => (1 << 41, index),
         Leaf::Remembered(index) => (1 << 42, index),
+        Leaf::Impulse(index) => (1 << 43, index),
     };
     fraction(kind, index, trial)
 }

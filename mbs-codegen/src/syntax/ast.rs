@@ -238,7 +238,8 @@ pub enum StatementKind {
         name: Name,
         kind: Type,
         value: Expression,
-        event: Name,
+        /// The event, with its round where a loop has several.
+        event: Joined,
     },
     Out {
         name: Name,
@@ -351,7 +352,7 @@ pub struct Field {
     pub of: Option<Joined>,
 }
 
-/// A body that a pin joins, or that a point is one of.
+/// A body that a pin joins, or that a point is one of; an event at which a value is latched.
 #[derive(Clone, Debug)]
 pub struct Joined {
     pub name: Name,
@@ -438,8 +439,9 @@ impl StatementKind {
                 };
                 [begins].into_iter().chain(end).flat_map(|one| [&one.larger, &one.smaller]).collect()
             }
-            StatementKind::Out { kind, value, .. } | StatementKind::Latch { kind, value, .. } => {
-                kind.shape.iter().chain([value]).collect()
+            StatementKind::Out { kind, value, .. } => kind.shape.iter().chain([value]).collect(),
+            StatementKind::Latch { kind, value, event, .. } => {
+                kind.shape.iter().chain([value]).chain(&event.index).collect()
             }
             StatementKind::Element { fields, .. } => fields
                 .iter()

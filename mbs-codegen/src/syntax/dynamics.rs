@@ -93,7 +93,7 @@ pub fn read_pin(parser: &mut Parser<'_>) -> Read<StatementKind> {
 }
 
 /// `rod` or `rods[i]`
-fn joined(parser: &mut Parser<'_>, help: &str) -> Read<Joined> {
+pub(super) fn joined(parser: &mut Parser<'_>, help: &str) -> Read<Joined> {
     let name = parser.name(help)?;
     let index = if parser.take('[') {
         let index = expression(parser)?;

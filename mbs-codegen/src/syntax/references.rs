@@ -9,11 +9,11 @@ use super::parser::{Parser, Read};
 use super::tokens::TokenKind;
 
 /// Functions of rows, drives, pins and bodies, then those of [`OF_FORCES`].
-pub const REFERRING: [&str; 9] =
-    ["lambda", "effort", "reaction", "force", "gap", "normal", "slip", "deflection", "power"];
+pub const REFERRING: [&str; 10] =
+    ["lambda", "effort", "reaction", "force", "gap", "normal", "impulse", "slip", "deflection", "power"];
 
 /// Functions of forces by their names. A text may declare these words: then they are its own.
-pub const OF_FORCES: [&str; 6] = ["force", "gap", "normal", "slip", "deflection", "power"];
+pub const OF_FORCES: [&str; 7] = ["force", "gap", "normal", "impulse", "slip", "deflection", "power"];
 
 impl Reader {
     /// `true` if `word` begins a reference here, where references are read.
@@ -32,6 +32,7 @@ impl Reader {
             "force" => "write `force(spring)`, or `force(springs[0])` for one of a loop",
             "gap" => "write `gap(cam)`, the name of a contact",
             "normal" => "write `normal(cam)`, the name of a contact",
+            "impulse" => "write `impulse(beak)`, the name of a rigid contact",
             "slip" => "write `slip(guide)`, the name of a friction",
             "deflection" => "write `deflection(guide)`, the name of a friction with bristles",
             "power" => "write `power(spring)`, the name of a force",

@@ -15,13 +15,15 @@ pub struct Grip<T> {
     pub place: T,
     /// Time (s) since which a contact is closed, with the time that its last, infinitely many bounces take together. Of others without meaning.
     pub since: T,
+    /// Impulse (N s) of the last impact of a contact, of several at one time their sum: 0 before the first one, and of others.
+    pub impulse: T,
 }
 
 impl<T: Scalar> Grip<T> {
     /// Neither slides nor holds: before anything is known of the motion.
     pub fn new() -> Self {
         let zero = T::constant(0.0);
-        Grip { direction: zero, force: zero, place: zero, since: zero }
+        Grip { direction: zero, force: zero, place: zero, since: zero, impulse: zero }
     }
 }
 

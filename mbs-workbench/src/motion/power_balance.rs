@@ -47,7 +47,8 @@ impl PowerCurve {
 
     /// `true` if it may be left out of a list: a row that supplies no power, or a time that changes nothing.
     pub fn is_idle(&self) -> bool {
-        self.by != PowerSource::Force && self.power.iter().all(|power| *power == 0.0)
+        let is_zero = |curve: &[f64]| curve.iter().all(|value| *value == 0.0);
+        self.by != PowerSource::Force && is_zero(&self.power) && is_zero(&self.work)
     }
 
     /// Work over the whole motion (J).

@@ -1,7 +1,7 @@
 //! Powers and works of forces and drives of ready mechanisms.
 
 use crate::reference::dynamics_of;
-use crate::{car_axis, four_bar_mass, governor, quarter_car, slider_crank_mass};
+use crate::{car_axis, door_with_closer, four_bar_mass, governor, quarter_car, slider_crank_mass};
 use mbs_workbench::card::Card;
 use mbs_workbench::erased::dynamics::direct_dynamics::{
     Approach, Implicit, ImplicitMethod, Pair, Stabilization, Steps,
@@ -69,14 +69,15 @@ fn moved(card: &Card, run: usize, stabilization: Stabilization, span: f64, count
     found.motion
 }
 
-/// Largest difference between the sum of the works and the work integrated for all, as a part of the largest work. It is the
+/// Largest difference between the sum of the works and the work integrated for all, as a part of the largest of them. It is the
 /// rounding of a few thousand sums, as both are the same quadrature.
 const ROUNDING: f64 = 1e-12;
 
 #[track_caller]
 fn assert_the_parts_add_up(motion: &Motion) {
     let found = forces(motion);
-    let scale = largest(found.work.iter().copied());
+    let parts = found.supplies.iter().flat_map(|supply| &supply.work);
+    let scale = largest(found.work.iter().chain(parts).copied());
     assert!(scale > 0.0);
     for (k, work) in found.work.iter().enumerate() {
         let sum: f64 = found.supplies.iter().map(|supply| supply.work[k]).sum();
@@ -124,6 +125,19 @@ fn a_constant_torque_times_its_angle_is_its_work_whatever_the_instants() {
         let turned = theta.last().expect("an end") - theta[0];
         let work = forces(&motion).supplies[0].total();
         assert!((work - 0.5 * turned).abs() < 1e-6 * work.abs(), "{work} J over {turned} rad");
+    }
+}
+
+/// A latch that breaks within a millisecond: from the play of 3 mm its spring of 3e5 N/m is drawn to 60 N.
+#[test]
+fn a_force_that_acts_between_two_instants_has_its_work() {
+    let torn = door_with_closer::CARD.runs().expect("presets").iter().position(|run| run.label == "torn");
+    for count in [1, 5, 60] {
+        let motion =
+            moved(&door_with_closer::CARD, torn.expect("a preset"), Stabilization::Projection, 6.0, count);
+        assert_the_parts_add_up(&motion);
+        let bolt = forces(&motion).supplies.iter().find(|supply| supply.name == "bolt").expect("the latch");
+        assert!((bolt.total() + 60.0 * 60.0 / (2.0 * 3e5)).abs() < 1e-9, "{count}: {} J", bolt.total());
     }
 }
 

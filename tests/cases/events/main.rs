@@ -15,6 +15,7 @@ mod d3_open_contacts;
 mod d3_spikes;
 mod d4_zero_start;
 mod declared;
+mod declared_in_loops;
 mod runs;
 mod t7_contact_damping;
 mod texts;

@@ -5,5 +5,6 @@ mod blocks;
 mod coordinates;
 mod cradle;
 mod disk;
+mod impulses;
 mod random;
 mod rod;

@@ -14,7 +14,6 @@ mechanism! {
     latch where: m = [x, y] at far;
     latch place: s = x at never;
     constraint held { y == 2mm*far; }
-    for i in 0..2 { event one: x > i*1mm; }
     drive push: x == since;
     force back: -10N*opens on x;
     out both: 1 = opens*closes;

@@ -17,6 +17,11 @@ mechanism! {
     out b: N = normal(spring);
     out c: m/s = slip(stop);
     out d: m = force(stop);
+    friction guide { along: x, normal: 5N, coefficient: 0.1, speed: 1mm/1s }
+    out e: N*s = impulse(stop);
+    out f: N*s = impulse(guide);
+    out g: N*s = impulse(stops);
+    out h: N*s = impulse(held);
 }
 
 fn main() {}

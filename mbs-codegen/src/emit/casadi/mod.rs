@@ -205,6 +205,8 @@ fn operation(model: &Model, node: Node) -> String {
         // The law of sliding forwards; the mode is the program's alone.
         Node::Sliding(_) => "ca.SX(1)".into(),
         Node::Holding(_) => "ca.SX(0)".into(),
+        // Before any impact.
+        Node::Impulse(_) => "ca.SX(0)".into(),
         // Every event holds, and every latched value is 1 in SI units.
         Node::Remembered(_) => "ca.SX(1)".into(),
         Node::Pin(pin, component) => format!("pins[{}]", 2 * pin + component),

@@ -239,6 +239,7 @@ impl<'a> Printer<'a> {
             }
             Leaf::Sliding(index) => (self.notation.name(&format!("sigma.{index}"), 0), Rank::Rate),
             Leaf::Holding(index) => (self.notation.name(&format!("h.{index}"), 0), Rank::Rate),
+            Leaf::Impulse(index) => (self.notation.name(&format!("P.{index}"), 0), Rank::Rate),
             Leaf::Remembered(index) => {
                 let dynamics = self.model.dynamics.as_ref();
                 let name = dynamics.and_then(|dynamics| dynamics.remembered(index as usize));

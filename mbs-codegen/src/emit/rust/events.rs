@@ -24,7 +24,7 @@ pub fn items(events: &Events, section: &Section, scope: &Scope<'_>, runtime: &To
         let (name, line) = (&event.name, quote_spanned!(event.span=> ::core::line!()));
         quote! { #runtime::Entry { name: #name, unit: "1", line: #line } }
     });
-    let owners = declared.latches.iter().filter_map(|latch| u16::try_from(latch.event).ok());
+    let owners = declared.latches.iter().filter_map(|latch| u16::try_from(latch.event?).ok());
     let (n, m) = (scope.model.coordinates.len(), scope.model.rows.len());
     let states = declared.states.len();
     let condition = |[larger, smaller]: &Condition| {

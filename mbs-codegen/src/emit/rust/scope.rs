@@ -122,6 +122,7 @@ impl Scope<'_> {
             Node::Leaf(Leaf::Direction(index)) => format!("__x[{index}]"),
             Node::Leaf(Leaf::Sliding(index)) => format!("{GRIPS}[{index}].direction"),
             Node::Leaf(Leaf::Holding(index)) => format!("{GRIPS}[{index}].force"),
+            Node::Leaf(Leaf::Impulse(index)) => format!("{GRIPS}[{index}].impulse"),
             Node::Leaf(Leaf::Remembered(index)) => format!("{REMEMBERED}[{index}]"),
             Node::Leaf(Leaf::Given(MARGIN, group)) => format!("__margin{group}"),
             Node::Leaf(Leaf::Given(row, index)) => format!("__gain{row}[{index}]"),

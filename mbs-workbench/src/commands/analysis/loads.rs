@@ -75,7 +75,10 @@ pub(super) fn energies(motion: &Motion) -> Vec<[String; 2]> {
             .power
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), power| (a.min(*power), b.max(*power)));
-        let powers = format!("power {} to {} W", significant(least, 5), significant(most, 5));
+        let powers = match (least, most) {
+            (0.0, 0.0) if supply.total() != 0.0 => "power between the instants shown alone".into(),
+            _ => format!("power {} to {} W", significant(least, 5), significant(most, 5)),
+        };
         [format!("work of {}", supply.title()), format!("{} J, {powers}", settled(supply.total(), error))]
     };
     let mut lines: Vec<[String; 2]> = active.iter().take(MOST_LINES).map(line).collect();

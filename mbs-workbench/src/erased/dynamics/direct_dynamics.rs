@@ -13,7 +13,7 @@ use mbs_runtime::{Dynamic, Failure, FailureKind, Partitioned};
 use super::integrators::Integrators;
 use super::record::Record;
 use super::start::{Start, moved_start, start, text_start};
-use super::work_by_source::{Quadrature, Single, add_works};
+use super::work_by_source::{Counted, Quadrature, add_works};
 use super::{AnyDynamics, power_balance};
 use crate::erased::facade::{Motion, State};
 use crate::erased::feeds::Feeds;
@@ -277,8 +277,8 @@ fn implicit<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Result<Simulated, Failure> {
     let count = |span| equal(span, longest);
     let mut found = stepped(mechanism, by.0, start, times, progress, &count)?;
-    add_works(&mut found, &|supply| {
-        stepped(mechanism, &Single { by, supply }, start, times, &mut |_| (), &count)
+    add_works(&mut found, &power_balance::may_act(mechanism, &start.0), &|supplies| {
+        stepped(mechanism, &Counted { by, supplies }, start, times, &mut |_| (), &count)
     });
     Ok(found)
 }
@@ -338,7 +338,9 @@ fn integrate<S: Dynamic<f64, N, M>, I: Integrators, const N: usize, const M: usi
         }
     };
     let mut found = run(formulation, progress)?;
-    add_works(&mut found, &|supply| run(&Single { by: formulation, supply }, &mut |_| ()));
+    add_works(&mut found, &power_balance::may_act(mechanism, &start.0), &|supplies| {
+        run(&Counted { by: formulation, supplies }, &mut |_| ())
+    });
     Ok(found)
 }
 

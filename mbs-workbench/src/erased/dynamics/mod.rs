@@ -18,6 +18,8 @@ mod settling;
 pub mod start;
 pub mod static_equilibrium;
 mod work_by_source;
+#[cfg(test)]
+mod work_by_source_tests;
 
 use mbs_runtime::{Dynamic, Failure};
 

@@ -24,6 +24,20 @@ pub(super) fn powers<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     of_forces.chain(of_rows).chain(of_time).collect()
 }
 
+/// `true` for each of them that has power in some motion from the position `q`: no row whose Φ_t vanishes whatever the time.
+pub(super) fn may_act<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    q: &[f64; N],
+) -> Vec<bool> {
+    // What depends on the time is no number where the time is none.
+    let parameters = mechanism.parameters();
+    let position = mechanism.position(&parameters, q, f64::NAN);
+    let moving = mechanism.phi_t(&parameters, &position);
+    let may_move = S::HAS_SIGNALS || !S::PHASES.is_empty();
+    let rows = moving.iter().map(|rate| may_move || *rate != 0.0);
+    S::FORCES.iter().map(|_| true).chain(rows).collect()
+}
+
 /// Adds the powers of an instant to `forces`.
 pub(crate) fn push<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     forces: &mut Forces,

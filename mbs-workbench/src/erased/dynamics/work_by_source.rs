@@ -10,17 +10,21 @@ use mbs_runtime::{Dynamic, DynamicState, Failure};
 
 use super::direct_dynamics::Simulated;
 use super::power_balance;
-use crate::motion::power_balance::PowerSource;
 
-/// Largest number of supplies with a run each; the works of more supplies are quadratures over the instants.
-const MOST_RUNS: usize = 8;
+/// Runs that every motion may have for its supplies; the works of more supplies are quadratures over the instants.
+const FEWEST_RUNS: usize = 8;
 
-/// The work of one supply, counted as [`power_balance::powers`] lists them, in place of that of all, for `by`.
-pub(super) struct Single<X> {
+/// Solutions of one unknown that all runs of a motion may take: about a second.
+const MOST_SOLUTIONS: u64 = 100_000_000;
+
+/// The work of some supplies, counted as [`power_balance::powers`] lists them, in place of that of all, for `by`.
+///
+/// Of one supply its power is counted. Of several the sum of the absolute powers, which is zero where none of them ever acts.
+pub(super) struct Counted<'a, X> {
     /// Formulation or method.
     pub by: X,
-    /// Index of the supply.
-    pub supply: usize,
+    /// Indices of the supplies.
+    pub supplies: &'a [usize],
 }
 
 /// Quadrature of the work within a step of an implicit method.
@@ -32,25 +36,60 @@ pub(super) enum Quadrature {
     Extrapolated,
 }
 
-/// Sets the work of each supply of `found` to the one that `run` integrates for it alone. If a single supply acts, the work of
-/// all is its own.
-pub(super) fn add_works(found: &mut Simulated, run: &dyn Fn(usize) -> Result<Simulated, Failure>) {
+/// A run of the motion that counts the work of these supplies.
+type Run<'a> = &'a dyn Fn(&[usize]) -> Result<Simulated, Failure>;
+
+/// Sets the work of each supply of `found` to the one that `run` integrates for it alone. If a single supply may act, the work of
+/// all is its own. `may_act`: supplies that have power in some motion.
+///
+/// A supply without power at all instants may act between them. One run tells if any of these does; which ones, runs of halves.
+pub(super) fn add_works(found: &mut Simulated, may_act: &[bool], run: Run<'_>) {
+    let mut runs = affordable(found);
     let Some(forces) = &mut found.motion.dynamics else { return };
-    let acting: Vec<usize> =
-        (0..).zip(&forces.supplies).filter(|(_, s)| acts(&s.power)).map(|(k, _)| k).collect();
-    // A force without power at all instants may do work between them.
-    let silent = forces.supplies.iter().any(|supply| supply.by == PowerSource::Force && !acts(&supply.power));
-    if acting.len() > MOST_RUNS {
+    let able = |index: &usize| may_act.get(*index) != Some(&false);
+    let all = 0..forces.supplies.len();
+    let (acting, silent): (Vec<usize>, Vec<usize>) = all
+        .filter(able)
+        .partition(|index| forces.supplies.get(*index).is_some_and(|supply| acts(&supply.power)));
+    if acting.len() > runs {
         return;
     }
-    for index in &acting {
+    let hidden = if silent.is_empty() { Vec::new() } else { acting_of(silent, &mut runs, run) };
+    let alone = acting.len() + hidden.len() == 1;
+    for index in acting.iter().chain(&hidden) {
         let Some(supply) = forces.supplies.get_mut(*index) else { continue };
-        let alone = acting.len() == 1 && !silent;
-        let work = if alone { Some(forces.work.clone()) } else { run(*index).ok().and_then(work_of) };
+        let work = if alone { Some(forces.work.clone()) } else { run(&[*index]).ok().and_then(work_of) };
         if let Some(work) = work.filter(|work| work.len() == supply.power.len()) {
             supply.work = work;
         }
     }
+}
+
+/// Those of the supplies that act anywhere in the motion, by halves; all of them where no runs are left.
+fn acting_of(supplies: Vec<usize>, runs: &mut usize, run: Run<'_>) -> Vec<usize> {
+    let (mut open, mut found) = (vec![supplies], Vec::new());
+    while let Some(mut group) = open.pop() {
+        let acts = *runs == 0 || run(&group).ok().and_then(work_of).is_none_or(|work| acts(&work));
+        *runs = runs.saturating_sub(1);
+        if !acts {
+            continue;
+        }
+        if group.len() == 1 {
+            found.extend(group);
+        } else {
+            let second = group.split_off(group.len() / 2);
+            open.extend([second, group]);
+        }
+    }
+    found
+}
+
+/// Number of runs that the supplies of a motion may have.
+fn affordable(found: &Simulated) -> usize {
+    let unknowns = found.motion.coordinates.len()
+        + found.motion.dynamics.as_ref().map_or(0, |forces| forces.multipliers.len());
+    let once = found.counts.evaluations.saturating_mul((unknowns * unknowns) as u64).max(1);
+    usize::try_from(MOST_SOLUTIONS / once).unwrap_or(usize::MAX).max(FEWEST_RUNS)
 }
 
 fn acts(power: &[f64]) -> bool {
@@ -61,8 +100,8 @@ fn work_of(run: Simulated) -> Option<Vec<f64>> {
     run.motion.dynamics.map(|forces| forces.work)
 }
 
-impl<X> Single<X> {
-    /// The power (W) of the supply in a state whose rates are known.
+impl<X> Counted<'_, X> {
+    /// The power (W) of the supplies in a state whose rates are known.
     fn power<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         &self,
         model: &Model<'_, S, f64, N, M>,
@@ -75,10 +114,14 @@ impl<X> Single<X> {
             DynamicState { qd: &y.qd, qdd: &solved.rate.qd, lambda: &solved.lambda, states: &y.states };
         let parameters = model.with_grip_forces(&position, y, (&solved.rate.qd, &solved.lambda));
         let powers = power_balance::powers(model.mechanism, (&parameters, &position), &motion);
-        powers.get(self.supply).map_or(0.0, |(_, _, power)| *power)
+        let power = |index: &usize| powers.get(*index).map_or(0.0, |(_, _, power)| *power);
+        match self.supplies {
+            [supply] => power(supply),
+            supplies => supplies.iter().map(|supply| power(supply).abs()).sum(),
+        }
     }
 
-    /// The rates with the power of the supply alone.
+    /// The rates with the power of the supplies alone.
     fn alone<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         &self,
         model: &Model<'_, S, f64, N, M>,
@@ -91,7 +134,7 @@ impl<X> Single<X> {
     }
 }
 
-impl<S, F, const N: usize, const M: usize> Formulation<S, f64, N, M> for Single<&F>
+impl<S, F, const N: usize, const M: usize> Formulation<S, f64, N, M> for Counted<'_, &F>
 where
     S: Dynamic<f64, N, M>,
     F: Formulation<S, f64, N, M> + ?Sized,
@@ -143,7 +186,7 @@ where
     }
 }
 
-impl<S, X, const N: usize, const M: usize> Method<S, f64, N, M> for Single<(&X, Quadrature)>
+impl<S, X, const N: usize, const M: usize> Method<S, f64, N, M> for Counted<'_, (&X, Quadrature)>
 where
     S: Dynamic<f64, N, M>,
     X: Method<S, f64, N, M> + ?Sized,
@@ -179,7 +222,7 @@ where
     }
 }
 
-impl<X> Single<X> {
+impl<X> Counted<'_, X> {
     /// The power (W) at a later instant; the mechanism itself is as it was at `start` (s).
     fn power_at<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         &self,

@@ -159,6 +159,7 @@ where
             answers.get(column).map_or(zero, |answer| dot(&row.gradient, answer))
         };
         let (most, mut stuck) = (MOST_IMPACTS.saturating_mul(K), [false; K]);
+        let mut total = [zero; K];
         for impact in 0..=most {
             let (mut part, mut b, mut approaching) = (touching, [zero; K], None);
             for (index, ((part, b), row)) in part.iter_mut().zip(&mut b).zip(&present).enumerate() {
@@ -194,8 +195,9 @@ where
                 let contact = contact::<S, R, N, M>(index);
                 return Err(FailureKind::ImpactUndecided { contact }.at(self.t.to_f64()));
             };
-            for (impulse, answer) in impulses.iter().zip(&answers) {
+            for ((impulse, answer), total) in impulses.iter().zip(&answers).zip(&mut total) {
                 next.qd = next.qd.plus(*impulse, &[1.0], [answer]);
+                *total = *total + *impulse;
             }
             read(&next, &mut present);
         }
@@ -237,6 +239,11 @@ where
             let open = rows.map(|row| is_off(&row, S::grips(&modes)));
             let frictions = S::grips_mut(&mut modes).iter_mut().zip(&open).filter(|(_, open)| **open);
             frictions.for_each(|(grip, _)| grip.direction = R::constant(1.0));
+        }
+        let struck = S::grips_mut(&mut modes).iter_mut().zip(&present).zip(&total);
+        for ((grip, row), total) in struck {
+            let strikes = row.restitution.is_some() && *total != zero;
+            grip.impulse = if strikes { *total } else { grip.impulse };
         }
         let gained = kinetic(&next.qd) - before;
         Ok(Some(Struck { y: next, parameters: modes, gained }))
