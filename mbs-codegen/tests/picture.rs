@@ -146,6 +146,23 @@ fn a_scene_has_the_statements_of_its_effects_and_its_own() {
 }
 
 #[test]
+fn a_scene_leaves_out_the_values_of_presets_that_belong_to_other_effects() {
+    let text = "mechanism Door; coord phi: rad = 0.1; param opened: rad = 1; body leaf { mass: 1kg, com: [0, 0], inertia: 1, angle: phi }
+        effect wind { param gust: N*m = 0; torque wind: -gust on phi; } effect closer { torque shut: -1 on phi; }
+        start phi = opened rate 0; out turned: rad = phi;
+        preset gust \"a gust\" { opened: 2, gust: 3 }
+        scene Calm = closer; scene Windy = closer + wind;";
+    let set = |scene: &str| picture(text, Some(scene)).expect("a picture").presets[0].set.clone();
+    assert_eq!(set("Calm"), [("opened".to_owned(), 2.0)]);
+    assert_eq!(set("Windy"), [("opened".to_owned(), 2.0), ("gust".to_owned(), 3.0)]);
+    assert!(mbs_codegen::expand_source(text).is_ok());
+    // A name that no effect declares is none in any scene.
+    let wrong = text.replace("gust: 3 }", "guts: 3 }");
+    let faults = mbs_codegen::expand_source(&wrong).expect_err("an unknown parameter");
+    assert!(faults.contains("`guts` is no parameter or input"), "{faults}");
+}
+
+#[test]
 fn two_titles_of_one_scene_are_an_error_and_those_of_two_scenes_are_none() {
     let mut statements = DRAWN;
     statements[0] = "title \"Of both\";";

@@ -44,8 +44,13 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Names of components and their values.
+    /// Names of components and their values; none of a parameter that belongs to an effect which the scene leaves out.
     fn setting(&mut self, setting: &Setting) -> Result<Vec<(String, f64)>, Fault> {
+        let name = &setting.place.name.text;
+        let is_field = self.places.model.fields.iter().any(|field| field.name.text == *name);
+        if !is_field && self.places.names.effect_of(name).is_some() {
+            return Ok(Vec::new());
+        }
         let Target { name, shape, suffix, dimension } = self.target(&setting.place)?;
         let values = self.places.elaborate(|work| {
             let value = work.value(&setting.value)?;

@@ -80,7 +80,10 @@ impl Text {
     /// # Errors
     /// The first fault of the text with this scene alone.
     pub fn measures(&self, scene: Scene) -> Result<Measures, String> {
-        let copy = self.copy(&[scene]);
+        // Presets may set parameters of effects that the scene leaves out: the whole declares them.
+        let whole = Scene::whole(self.effects.len());
+        let others = if scene == whole { &[][..] } else { &[whole][..] };
+        let copy = self.copy(&[&[scene], others].concat());
         // The name of a compared scene tells a reader nothing.
         let plain = |words: &str| {
             words

@@ -110,6 +110,15 @@ fn contributions_are_differences_and_the_scene_to_paste_compiles() {
 }
 
 #[test]
+fn an_effect_whose_parameter_a_preset_sets_can_be_left_out() {
+    let source = TEXT.replace("force pull: [3, 0]", "param drawn: N = 3; force pull: [drawn, 0]");
+    let source = format!("{source} preset far \"a stronger pull\" {{ drawn: 5 }}");
+    let of_presets = Text { source, ..text(&["strong", "weak"]) };
+    let of_presets = Text { groups: mbs_codegen::effects(&of_presets.source), ..of_presets };
+    assert!(of_presets.measures(Scene(0b10)).is_ok(), "{:?}", of_presets.measures(Scene(0b10)));
+}
+
+#[test]
 fn a_scene_that_is_no_mechanism_is_named_with_its_reason() {
     let reason = text(&["strong", "faulty"]).measures(Scene(0b11)).expect_err("a coordinate without mass");
     assert!(!reason.is_empty() && !reason.contains("Compared"), "{reason}");
