@@ -81,11 +81,16 @@ pub(super) fn turns(x: f64, start: f64, period: f64) -> f64 {
 /// The largest whole number that is not above `x`: `libm::floor`, which takes the bits apart on targets without an instruction for it.
 #[inline(always)]
 pub(super) fn floor(x: f64) -> f64 {
-    let towards_zero = (x as i64) as f64;
-    let is_near = (x - towards_zero).abs() < 1.0;
-    match is_near {
-        true => towards_zero - if x < towards_zero { 1.0 } else { 0.0 },
-        // NaN, and what is beyond all integers.
+    // A sum of this size has no digits behind the point: what is added and taken off again is rounded to the nearest whole number.
+    const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
+    let nearest = (x + WHOLE) - WHOLE;
+    match x.abs() < (1_u64 << 50) as f64 {
+        true => nearest - if x < nearest { 1.0 } else { 0.0 },
+        // NaN, and what is next to the largest whole numbers or beyond them.
         false => libm::floor(x),
     }
 }
+
+#[cfg(test)]
+#[path = "piecewise_tests.rs"]
+mod tests;

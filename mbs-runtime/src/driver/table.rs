@@ -1,8 +1,11 @@
 //! Tables of polynomials between knots.
 
-use crate::driver::piecewise::{Piece, floor, jet};
+use core::array::from_fn;
+
+use crate::driver::piecewise::{distance, each, floor, taylor};
+use crate::linear_algebra::parts::at;
 use crate::mechanism::function::Function;
-use crate::scalar::number::Scalar;
+use crate::scalar::number::{Real, Scalar};
 
 /// Polynomials of `C` coefficients between knots, `C` − 2 times continuously differentiable: a spline.
 ///
@@ -38,11 +41,11 @@ impl<'a, const C: usize> Table<'a, C> {
     }
 
     /// Number of the piece at `x`, which lies within the first period: `guess`, where it holds there.
-    #[inline]
+    #[inline(always)]
     fn index(&self, x: f64, guess: usize) -> usize {
         let begins = self.knots.get(guess).is_some_and(|knot| *knot <= x);
         let holds = begins && self.knots.get(guess.saturating_add(1)).is_none_or(|next| x < *next);
-        if holds { guess } else { self.knots.partition_point(|knot| *knot <= x).saturating_sub(1) }
+        if holds { guess } else { searched(self.knots, x) }
     }
 
     /// Number of whole periods before `x`, as an argument; 0 where there is none.
@@ -52,8 +55,9 @@ impl<'a, const C: usize> Table<'a, C> {
         floor((x - first) * self.rate) * period
     }
 
-    #[inline]
-    fn piece(&self, x: f64) -> Piece<C> {
+    /// The piece at `x`.
+    #[inline(always)]
+    fn place(&self, x: f64) -> Place<'a, C> {
         let first = self.knots.first().copied().unwrap_or(f64::NAN);
         // In lengths of the table.
         let place = (x - first) * self.rate;
@@ -67,24 +71,39 @@ impl<'a, const C: usize> Table<'a, C> {
         let local = x - shift;
         // So many periods away that the rest after them has no digit left.
         let kept = self.period.is_none_or(|period| (local - first).abs() <= 2.0 * period);
-        if !kept {
-            return Piece { origin: f64::NAN, coefficients: [f64::NAN; C] };
-        }
         // 0 for NaN, far too much for what is negative: then the knots are searched.
         let guess = ((place - turns) * intervals as f64) as i64 as usize;
         let index = self.index(local, guess);
-        let (Some(knot), Some(coefficients)) = (self.knots.get(index), self.pieces.get(index)) else {
-            return Piece { origin: f64::NAN, coefficients: [f64::NAN; C] };
-        };
-        let mut coefficients = *coefficients;
-        if self.period.is_none()
-            && local < *knot
-            && let Some(highest) = coefficients.last_mut()
-        {
-            *highest = 0.0;
+        match (self.knots.get(index), self.pieces.get(index)) {
+            (Some(knot), Some(coefficients)) if kept => {
+                let is_before = self.period.is_none() && local < *knot;
+                Place { origin: shift + knot, coefficients, is_before }
+            }
+            _ => Place { origin: f64::NAN, coefficients: &const { [f64::NAN; C] }, is_before: false },
         }
-        Piece { origin: shift + knot, coefficients }
     }
+}
+
+/// A piece where it is stored: copied as a whole it would have to reach the memory before its first number is read.
+#[derive(Clone, Copy)]
+struct Place<'a, const C: usize> {
+    origin: f64,
+    coefficients: &'a [f64; C],
+    /// `true` before the first knot, where the highest power is left out.
+    is_before: bool,
+}
+
+impl<const C: usize> Place<'_, C> {
+    #[inline(always)]
+    fn coefficient(&self, j: usize) -> f64 {
+        if self.is_before && C == j + 1 { 0.0 } else { at(self.coefficients, j) }
+    }
+}
+
+/// Number of the last knot that is not above `x`, by halving.
+#[inline(never)]
+fn searched(knots: &[f64], x: f64) -> usize {
+    knots.partition_point(|knot| *knot <= x).saturating_sub(1)
 }
 
 const fn rate(knots: &[f64], period: Option<f64>) -> f64 {
@@ -100,7 +119,9 @@ impl<T: Scalar, const C: usize> Function<T> for Table<'_, C> {
 
     #[inline]
     fn jet<const K: usize>(&self, x: T) -> [T; K] {
-        jet(x, |x| self.piece(x))
+        let places = T::per_lane(|lane| self.place(x.lane(lane).to_f64()));
+        let distance = distance(x, &places, |place: &Place<'_, C>| place.origin);
+        taylor::<T, C, K>(from_fn(|j| each(&places, |place: &Place<'_, C>| place.coefficient(j))), distance)
     }
 
     fn breakpoint_after(&self, x: f64) -> Option<f64> {

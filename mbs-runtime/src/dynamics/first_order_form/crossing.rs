@@ -103,6 +103,30 @@ where
         Err(failed.unwrap_or(FailureKind::StepTooSmall { step: 0.0 }.at(until.to_f64())))
     }
 
+    /// The rate of a state that has none on the constraints, with the `failure` of that: where no step can be made smaller, as it is.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn rate_as_it_is(
+        &mut self,
+        t: R,
+        y: &Moving<S, R, N, M>,
+        failure: &Failure,
+    ) -> Result<Moving<S, R, N, M>, Failure> {
+        if !self.is_fixed() {
+            return Err(*failure);
+        }
+        self.model.require_bounded(t, &self.end, &y.y.q)?;
+        if !matches!(failure, Failure { kind: FailureKind::OffConstraints { .. }, .. }) {
+            return Err(*failure);
+        }
+        let solved = self.at(t, &y.phases, |model, formulation, lambda, counts| {
+            let solved = formulation.solve_as_it_is(model, t, &y.y, lambda, counts)?;
+            *lambda = solved.lambda;
+            Ok(solved)
+        })?;
+        Ok(self.phased(t, solved.rate))
+    }
+
     /// Fails where a step that can be made smaller may have left the branch of its motion, in numbers so coarse that the accelerations do
     /// not tell. `entered`: its end is next to a singular position. Steps of fixed size and their parts are judged as a whole.
     #[inline(always)]

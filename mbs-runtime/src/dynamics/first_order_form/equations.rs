@@ -13,7 +13,7 @@ use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::{Tolerance, worse};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
-use crate::failure::{Failure, FailureKind};
+use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Real;
@@ -47,8 +47,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     seen: (R, R),
     /// The first passage since `start`.
     pub(crate) passage: Option<Passage<R>>,
-    /// `end` and `passage` before the last step, where steps may be taken again.
-    before: Before<S, R, N, M>,
+    /// `end` and `passage` before the last step, once there is one that may be taken again.
+    before: Option<Before<S, R, N, M>>,
     /// Resolution and bounds of the search for contacts.
     pub(super) scrutiny: Scrutiny<R>,
     /// The parameters of the present step, without the contacts that are open and with the modes of frictions, where there are any.
@@ -100,7 +100,7 @@ where
             end,
             seen,
             passage: None,
-            before: (end, None),
+            before: None,
             scrutiny: Scrutiny::beyond(),
             parameters: Self::MAY_CHANGE.then_some(*model.parameters),
             quiet: start,
@@ -241,9 +241,12 @@ where
         y: &Moving<S, R, N, M>,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
         self.at(t, &y.phases, |model, formulation, lambda, counts| {
-            let solved = formulation.solve(model, t, &y.y, lambda, counts)?;
-            *lambda = solved.lambda;
-            Ok(solved)
+            // Handed on as it is: what is taken out and wrapped again is copied twice.
+            let solved = formulation.solve(model, t, &y.y, lambda, counts);
+            if let Ok(solved) = &solved {
+                *lambda = solved.lambda;
+            }
+            solved
         })
     }
 
@@ -288,7 +291,7 @@ where
 
     /// The rate of a state whose coordinates, velocities and first-order states have the rate `y`.
     #[inline(always)]
-    fn phased(&mut self, t: R, y: IntegratorState<R, N, S::States>) -> Moving<S, R, N, M> {
+    pub(super) fn phased(&mut self, t: R, y: IntegratorState<R, N, S::States>) -> Moving<S, R, N, M> {
         Phased { y, phases: self.phase_rates(t) }
     }
 
@@ -301,14 +304,17 @@ where
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
         let Phased { y, phases } = y;
         self.at(t, phases, |model, formulation, lambda, counts| {
-            let solved = if const { S::SET_VALUED.is_empty() } {
-                formulation.project_and_solve(model, t, y, lambda, counts)?
+            let mut solved = if const { S::SET_VALUED.is_empty() } {
+                formulation.project_and_solve(model, t, y, lambda, counts)
             } else {
                 model.settle(formulation, t, y, counts)?;
-                formulation.solve(model, t, y, lambda, counts)?
+                formulation.solve(model, t, y, lambda, counts)
             };
-            *lambda = solved.lambda;
-            Ok(model.with_margin_of_rows(t, y, solved))
+            if let Ok(solved) = &mut solved {
+                *lambda = solved.lambda;
+                solved.margin = model.margin_beside_rows(t, y, solved.margin);
+            }
+            solved
         })
     }
 
@@ -333,21 +339,10 @@ where
 
     #[inline]
     fn rate(&mut self, t: R, y: &Self::State) -> Result<Self::State, Failure> {
-        match self.solve(t, y) {
-            Err(failure) if self.fixed => {
-                self.model.require_bounded(t, &self.end, &y.y.q)?;
-                if !matches!(failure, Failure { kind: FailureKind::OffConstraints { .. }, .. }) {
-                    return Err(failure);
-                }
-            }
-            solved => return Ok(self.phased(t, solved?.rate)),
+        match &self.solve(t, y) {
+            Ok(solved) => Ok(self.phased(t, solved.rate)),
+            Err(failure) => self.rate_as_it_is(t, y, failure),
         }
-        let solved = self.at(t, &y.phases, |model, formulation, lambda, counts| {
-            let solved = formulation.solve_as_it_is(model, t, &y.y, lambda, counts)?;
-            *lambda = solved.lambda;
-            Ok(solved)
-        })?;
-        Ok(self.phased(t, solved.rate))
     }
 
     fn collocate(
@@ -377,7 +372,7 @@ where
         let next = Instant { t, y: y.y, solved, carried: solved.rate.qd };
         self.require_branch_of_step(&next, self.counts.singular != singular)?;
         if const { Self::MAY_CHANGE } {
-            self.before = (self.end, self.passage);
+            self.before = Some((self.end, self.passage));
         }
         self.passage = self.passage.or(Passage::between((before, margin), (t, solved.margin)));
         self.end = next;
@@ -440,7 +435,7 @@ where
     }
 
     fn retake(&mut self) {
-        (self.end, self.passage) = self.before;
+        (self.end, self.passage) = self.before.unwrap_or((self.end, self.passage));
     }
 
     fn obstacle(&self) -> Option<Failure> {

@@ -51,12 +51,15 @@ where
         motion.keep_steps(self.integrator.order());
         let t = from.t + h;
         let start = beginning(model.mechanism, from);
-        let stepped = self.integrator.step(&mut motion, from.t, h, &start.y, &start.rate);
-        let ended = stepped.and_then(|mut end| match motion.project_and_solve(t, &mut end) {
-            Ok(solved) => Ok((end.y, solved)),
-            Err(failure) => model.require_bounded(t, from, &end.y.q).and(Err(failure)),
-        });
-        let margin = ended.as_ref().map_or(from.solved.margin, |(_, solved)| solved.margin);
+        let ended = match &mut self.integrator.step(&mut motion, from.t, h, &start.y, &start.rate) {
+            // Once, and by reference: what a step is made of is long.
+            Ok(end) => match &motion.project_and_solve(t, end) {
+                Ok(solved) => Ok(Instant { t, y: end.y, solved: *solved, carried: solved.rate.qd }),
+                Err(failure) => model.require_bounded(t, from, &end.y.q).and(Err(*failure)),
+            },
+            Err(failure) => Err(*failure),
+        };
+        let margin = ended.as_ref().map_or(from.solved.margin, |next| next.solved.margin);
         let entered = motion.counts.singular != counts.singular;
         if entered || margin.min(from.solved.margin) < near() {
             let keeps = !(self.integrator.uses_slopes() || self.formulation.leaves_constraints());
@@ -65,17 +68,17 @@ where
                     // What the step itself failed with says more than its parts do.
                     motion.in_parts(start, t).map_err(|failure| ended.err().unwrap_or(failure))?
                 } else {
-                    let (y, solved) = ended?;
-                    Instant { t, y, solved, carried: solved.rate.qd }
+                    ended?
                 };
                 model.require_one_branch(from, &next, R::constant(0.0))?;
                 *counts = motion.counts;
                 return Ok(next);
             }
         }
-        let (y, solved) = ended?;
-        *counts = motion.counts;
-        Ok(Instant { t, y, solved, carried: solved.rate.qd })
+        if ended.is_ok() {
+            *counts = motion.counts;
+        }
+        ended
     }
 
     fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {

@@ -112,10 +112,13 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         }
         if S::IS_PARTITIONED && has_blocks(model) {
             let place = block_elimination::place(model, t, y);
-            if place.is_regular()
-                && let Some(solved) = block_elimination::solve(model, (t, y), &place, lambda, counts)?
-            {
-                return Ok(solved);
+            if place.is_regular() {
+                // By reference: `?` would move the rates once more.
+                match &block_elimination::solve(model, (t, y), &place, lambda, counts) {
+                    Ok(Some(solved)) => return Ok(*solved),
+                    Ok(None) => {}
+                    Err(failure) => return Err(*failure),
+                }
             }
         }
         self.solve_by_rows(model, (t, y), lambda, counts)
@@ -173,8 +176,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         };
         match settled {
             Some(place) if place.is_regular() => {
-                if let Some(solved) = block_elimination::solve_apart(model, (t, y), &place, lambda, counts)? {
-                    return Ok(solved);
+                match &block_elimination::solve_apart(model, (t, y), &place, lambda, counts) {
+                    Ok(Some(solved)) => return Ok(*solved),
+                    Ok(None) => {}
+                    Err(failure) => return Err(*failure),
                 }
             }
             Some(_) => {}

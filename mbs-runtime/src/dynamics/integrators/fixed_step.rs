@@ -82,7 +82,11 @@ impl FixedStep for RungeKutta4 {
         let (mut stage, mut change) = (*rate, y.zero());
         change.add(T::constant(1.0 / 6.0), rate);
         for (place, weight) in STAGES {
-            stage = equation.rate(t + T::constant(place) * h, &y.plus(h, &[place], [&stage]))?;
+            // By reference: `?` would move the rate once more.
+            match &equation.rate(t + T::constant(place) * h, &y.plus(h, &[place], [&stage])) {
+                Ok(rate) => stage = *rate,
+                Err(failure) => return Err(*failure),
+            }
             change.add(T::constant(weight), &stage);
         }
         let mut next = *y;

@@ -35,15 +35,30 @@ impl<R: Real, P, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R
 
     /// The state at `t` (s): of the cubic through both ends.
     pub(super) fn at(&self, t: R) -> IntegratorState<R, N, Z> {
-        let (from, next) = (&self.from.instant, &self.next);
-        if next.t <= t {
-            return next.y;
-        }
-        let [start, end] =
-            [from, next].map(|instant| Point { t: instant.t, y: instant.y, rate: instant.solved.rate });
-        if t <= from.t { from.y } else { cubic(&start, &end, t) }
+        between((&self.from.instant, &self.next), t)
+    }
+
+    /// Its beginning and its end.
+    fn ends(&self) -> Ends<'_, R, N, M, Z> {
+        (&self.from, &self.next)
     }
 }
+
+/// The state at `t` (s) of a step: of the cubic through both ends.
+fn between<R: Real, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R]>>(
+    (from, next): (&Instant<R, N, M, Z>, &Instant<R, N, M, Z>),
+    t: R,
+) -> IntegratorState<R, N, Z> {
+    if next.t <= t {
+        return next.y;
+    }
+    let [start, end] =
+        [from, next].map(|instant| Point { t: instant.t, y: instant.y, rate: instant.solved.rate });
+    if t <= from.t { from.y } else { cubic(&start, &end, t) }
+}
+
+/// Beginning and end of a step, where they are stored.
+type Ends<'a, R, const N: usize, const M: usize, Z> = (&'a Fresh<R, N, M, Z>, &'a Instant<R, N, M, Z>);
 
 /// Parameters without the contacts that are open where a step begins, and the time (s) up to which all stay open by the bounds of the
 /// text.
@@ -110,18 +125,38 @@ where
         self.whole_step(h)
     }
 
-    /// A step of `h` (s) that ends at no contact.
+    /// A step of `h` (s) that ends at no contact. Each instant stays where it was made: it is long.
     #[inline(always)]
     fn whole_step(&mut self, h: R) -> Result<(), Failure> {
-        // By reference: what a step is made of is long.
-        match &self.ahead(h, self.counts, false) {
-            Ok(ahead) => {
-                self.check_ahead(ahead)?;
-                self.go(ahead);
+        let mut counts = self.counts;
+        let fresh = &self.beginning(h, &mut counts);
+        let from = match fresh {
+            Ok(from) => from,
+            Err(failure) => return Err(*failure),
+        };
+        let model = Model { rank_rises: from.rank_rises, first_order: true, ..self.model() };
+        match &self.method.step(&model, &from.instant, h, &mut counts) {
+            Ok(next) => {
+                let phases = self.method.phases_after(&model, from.instant.t, h)?;
+                counts.steps = self.counts.steps + 1;
+                self.judge((from, next))?;
+                self.check_ends((from, next))?;
+                self.go_on((from, next), phases, counts);
                 Ok(())
             }
-            Err(failure) => Err(*failure),
+            Err(failure) => Err(model.traced(*failure, from.instant.t, &from.instant.y)),
         }
+    }
+
+    /// The instant at which a step of `h` (s) begins.
+    #[inline(always)]
+    fn beginning(&self, h: R, counts: &mut Counts) -> Result<Fresh<R, N, M, S::States>, Failure> {
+        let t = self.now.t + h;
+        if !R::constant(0.0).less(h) || !t.is_finite() || t == self.now.t {
+            return Err(FailureKind::InvalidStep { step: h.to_f64() }.at(self.now.t.to_f64()));
+        }
+        self.method.check_step(h, self.now.t)?;
+        self.fresh(counts)
     }
 
     /// Moves on to `until` (s) in `steps` equal steps; not at all where `until` is the present time.
@@ -157,7 +192,7 @@ where
     ) -> Result<AheadOf<S, R, N, M>, Failure> {
         let mut open = None;
         let ahead = self.trial(h, counts, without_open.then_some(&mut open));
-        match ahead.as_ref().map_or(Ok(()), |known| self.judge(known)) {
+        match ahead.as_ref().map_or(Ok(()), |known| self.judge(known.ends())) {
             Ok(()) => ahead,
             Err(failure) => Err(failure),
         }
@@ -172,12 +207,7 @@ where
         mut counts: Counts,
         open: Option<&mut Option<LeftOut<S, R, N, M>>>,
     ) -> Result<AheadOf<S, R, N, M>, Failure> {
-        let t = self.now.t + h;
-        if !R::constant(0.0).less(h) || !t.is_finite() || t == self.now.t {
-            return Err(FailureKind::InvalidStep { step: h.to_f64() }.at(self.now.t.to_f64()));
-        }
-        self.method.check_step(h, self.now.t)?;
-        let fresh = self.fresh(&mut counts)?;
+        let fresh = self.beginning(h, &mut counts)?;
         let (from, rank_rises) = (&fresh.instant, fresh.rank_rises);
         let model = Model { rank_rises, first_order: true, ..self.model() };
         let mut parameters = &self.parameters;
@@ -201,9 +231,9 @@ where
 
     /// Fails where a step does not end as one of a motion.
     #[inline(always)]
-    fn judge(&self, ahead: &AheadOf<S, R, N, M>) -> Result<(), Failure> {
-        let (from, next) = (&ahead.from.instant, &ahead.next);
-        let model = Model { rank_rises: ahead.from.rank_rises, ..self.model() };
+    fn judge(&self, (fresh, next): Ends<'_, R, N, M, S::States>) -> Result<(), Failure> {
+        let from = &fresh.instant;
+        let model = Model { rank_rises: fresh.rank_rises, ..self.model() };
         let judged = model.require_plausible((from, next.t - from.t), next);
         let judged = judged.and_then(|()| model.check(next.t, &next.y));
         judged.map_err(|failure| model.traced(failure, from.t, &from.y))
@@ -211,23 +241,38 @@ where
 
     /// Fails where a step leaves a working range or a branch.
     pub(super) fn check_ahead(&self, ahead: &AheadOf<S, R, N, M>) -> Result<(), Failure> {
-        let (model, (start, end)) = (self.model(), ahead.times());
-        let unknown = [R::constant(0.0); N];
-        model.check_ranges(start, (start, end), |t| ahead.at(t), (self.scrutiny.resolution, &unknown))?;
-        model.check_branches(start, (end, &ahead.next.y))
+        self.check_ends(ahead.ends())
+    }
+
+    /// [`check_ahead`](Self::check_ahead) of a step by its ends.
+    fn check_ends(&self, (from, next): Ends<'_, R, N, M, S::States>) -> Result<(), Failure> {
+        let (model, from) = (self.model(), &from.instant);
+        let (start, end, unknown) = (from.t, next.t, [R::constant(0.0); N]);
+        let at = |t| between((from, next), t);
+        model.check_ranges(start, (start, end), at, (self.scrutiny.resolution, &unknown))?;
+        model.check_branches(start, (end, &next.y))
     }
 
     /// Takes a step.
     pub(super) fn go(&mut self, ahead: &AheadOf<S, R, N, M>) {
-        let Ahead { from: Fresh { instant: from, gained, rank_rises }, next, phases, counts } = ahead;
-        let (gained, rank_rises, phases, counts) = (*gained, *rank_rises, *phases, *counts);
+        self.go_on(ahead.ends(), ahead.phases, ahead.counts);
+    }
+
+    /// [`go`](Self::go), of a step by its ends.
+    fn go_on(
+        &mut self,
+        (fresh, next): Ends<'_, R, N, M, S::States>,
+        phases: Option<S::Phases>,
+        counts: Counts,
+    ) {
+        let Fresh { instant: from, gained, rank_rises } = fresh;
         let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
         let passage = Passage::between(ends.0, ends.1);
         self.passage = self.passage.or(passage);
-        self.rank_rises = rank_rises;
+        self.rank_rises = *rank_rises;
         self.take(next, phases, counts);
         self.passed = passage.is_some();
-        self.reference = self.reference + gained;
+        self.reference = self.reference + *gained;
     }
 
     /// The first time (s) within a step at which a contact closes or opens, unless that is its end.
@@ -292,7 +337,7 @@ where
             let Some(kink) = self.kink(&trial)? else { break };
             trial = self.trial_with_contacts(kink - self.now.t, trial.ahead.counts)?;
         }
-        self.judge(&trial.ahead).map(|()| trial.ahead)
+        self.judge(trial.ahead.ends()).map(|()| trial.ahead)
     }
 
     /// A step of `h` (s) that does not feel the contacts that it runs into; one that does, where there is none without them.
@@ -315,7 +360,7 @@ where
         if self.kink(&trial)?.is_some() {
             return self.step_in_parts(trial.ahead.next.t);
         }
-        self.judge(&trial.ahead)?;
+        self.judge(trial.ahead.ends())?;
         self.check_ahead(&trial.ahead)?;
         self.go(&trial.ahead);
         Ok(())

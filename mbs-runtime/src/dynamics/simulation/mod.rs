@@ -316,15 +316,23 @@ where
     }
 
     /// The instant, solved anew where parameters or inputs have changed.
+    #[inline]
     fn fresh(&self, counts: &mut Counts) -> Result<Fresh<R, N, M, S::States>, Failure> {
         if let Some(failure) = self.fault {
             return Err(failure);
         }
-        let (Instant { t, mut y, solved, .. }, mut model) = (self.now, self.model());
-        if !self.stale {
-            let rank_rises = self.rank_rises || self.passed && rank_rises(&model, t, &y);
-            return Ok(Fresh { instant: self.now, gained: R::constant(0.0), rank_rises });
+        if self.stale {
+            return self.solved_anew(counts);
         }
+        let (Instant { t, y, .. }, passed) = (&self.now, self.passed);
+        let rank_rises = self.rank_rises || passed && rank_rises(&self.model(), *t, y);
+        Ok(Fresh { instant: self.now, gained: R::constant(0.0), rank_rises })
+    }
+
+    /// The instant after parameters or inputs have changed.
+    #[inline(never)]
+    fn solved_anew(&self, counts: &mut Counts) -> Result<Fresh<R, N, M, S::States>, Failure> {
+        let (Instant { t, mut y, solved, .. }, mut model) = (self.now, self.model());
         Projection::default().project(&model, t, &mut y, counts)?;
         model.rank_rises = model.rank_rises || rank_rises(&model, t, &y);
         let solved = self.method.solve(&model, t, &y, &solved.lambda, counts);

@@ -44,10 +44,16 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         y: &IntegratorState<R, N, S::States>,
         solved: Solved<R, N, M, S::States>,
     ) -> Solved<R, N, M, S::States> {
-        if !S::IS_PARTITIONED || near::<R>() < solved.margin {
-            return solved;
+        Solved { margin: self.margin_beside_rows(t, y, solved.margin), ..solved }
+    }
+
+    /// The margin of all rows at `(t, y)` where `margin`, that of blocks, is small.
+    #[inline]
+    pub(crate) fn margin_beside_rows(&self, t: R, y: &IntegratorState<R, N, S::States>, margin: R) -> R {
+        if !S::IS_PARTITIONED || near::<R>() < margin {
+            return margin;
         }
-        Solved { margin: self.margin_of_rows(t, y).unwrap_or(solved.margin), ..solved }
+        self.margin_of_rows(t, y).unwrap_or(margin)
     }
 
     /// Margin of all rows at `(t, y)`: 0 where they lose rank; `None` where no mass moves with a free motion.
