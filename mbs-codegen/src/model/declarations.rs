@@ -7,7 +7,6 @@ use proc_macro2::Span;
 use super::Model;
 use super::bare_angles::is_of_angles;
 use super::elaborator::Elaborator;
-use super::event_rounds::is_of_events;
 use super::initialiser::{definition, in_unit, initialiser, numbers};
 use super::late_lets::late_lets;
 use super::names::Names;
@@ -88,12 +87,12 @@ pub fn declare(
             "split it: a step keeps a dozen arrays of all coordinates on its stack",
         );
     }
-    let others = in_loops.into_iter().filter(|statement| !is_of_events(&statement.kind));
+    let others = in_loops.into_iter().filter(|statement| !statement.kind.is_of_events());
     for statement in faulty.into_iter().chain(others) {
         work.stand_in(statement);
     }
     work.events(statements);
-    work.give_up(statements, is_of_events);
+    work.give_up(statements, StatementKind::is_of_events);
     let late = late_lets(&top);
     for name in &late {
         work.names.postpone(name);

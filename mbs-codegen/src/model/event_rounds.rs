@@ -8,11 +8,6 @@ use super::resolver::LoopFrame;
 use super::value::Fault;
 use crate::syntax::ast::{Expression, Loop, Operation, Statement, StatementKind};
 
-/// `true` if the statement declares an event or a latched value.
-pub(super) fn is_of_events(kind: &StatementKind) -> bool {
-    matches!(kind, StatementKind::Event { .. } | StatementKind::Latch { .. })
-}
-
 impl Declarations<'_> {
     /// Before: statements with loops. After: events and latched values in the order of the unrolled text, those in loops once a round.
     ///
@@ -28,10 +23,10 @@ impl Declarations<'_> {
                 StatementKind::For(head) => {
                     let end = behind_loop(statements, next, is_for, is_end);
                     let body = statements.get(next..end).unwrap_or_default();
-                    let bounds = match body.iter().any(|statement| is_of_events(&statement.kind)) {
+                    let bounds = match body.iter().any(|statement| statement.kind.is_of_events()) {
                         true => self
                             .bounds(head, statements)
-                            .inspect_err(|_| self.give_up(body.iter(), is_of_events)),
+                            .inspect_err(|_| self.give_up(body.iter(), StatementKind::is_of_events)),
                         false => Ok((0, 0)),
                     };
                     match bounds {
@@ -56,7 +51,7 @@ impl Declarations<'_> {
                         loops.push(frame);
                     }
                 }
-                kind if is_of_events(kind) => found.push(statement),
+                kind if kind.is_of_events() => found.push(statement),
                 _ => {}
             }
         }

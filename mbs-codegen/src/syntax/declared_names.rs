@@ -3,6 +3,11 @@
 use super::ast::{Declares, Name, StatementKind};
 
 impl StatementKind {
+    /// `true` if the statement declares an event or a latched value.
+    pub fn is_of_events(&self) -> bool {
+        matches!(self, StatementKind::Event { .. } | StatementKind::Latch { .. })
+    }
+
     /// Name that the statement declares, after the kind of names that it must differ from.
     pub fn declared(&self) -> Option<(&'static str, &Name)> {
         Some(match self {
