@@ -7,9 +7,10 @@ use crate::{browser, costs, documents, fuzz, growth, instructions, lines, plante
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 6] = [
+const LONG: [(&str, &str); 7] = [
     ("mbs-motions", ""),
     ("mbs-cases", "friction"),
+    ("mbs-cases", "impacts"),
     ("mbs-cases", "laws"),
     ("mechanisms", "effects"),
     ("mbs-tests", "proofs"),
