@@ -193,6 +193,11 @@ impl fmt::Display for Failure {
                 "the step at t = {time} s is too long: step times frequency is {product:.3}, allowed {allowed:.3}; take a \
                  smaller step or a lower frequency"
             ),
+            FailureKind::StepUnresolved { step, part, allowed } => write!(
+                f,
+                "the step of {step:.1e} s from t = {time} s does not resolve the forces: its thirds correct the velocities by \
+                 {part:.2} of the largest, allowed {allowed:.2}; take shorter steps, or adaptive ones"
+            ),
             FailureKind::Inconsistent { rows, level, residual, required, .. } => write!(
                 f,
                 "{}{rows} contradict each other at t = {time} s: {residual:.3e} stays open at best, required \

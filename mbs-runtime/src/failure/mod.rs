@@ -316,6 +316,15 @@ pub enum FailureKind {
         /// The largest that is allowed.
         allowed: f64,
     },
+    /// A part of a step of fixed size and its thirds lead to velocities that differ by too much: the step is too long to follow the forces.
+    StepUnresolved {
+        /// The part (s).
+        step: f64,
+        /// Correction by the thirds, over the largest velocity in the reference metric.
+        part: f64,
+        /// The largest that is allowed.
+        allowed: f64,
+    },
     /// Rows of which some should follow from others contradict each other: nothing satisfies all of them.
     Inconsistent {
         /// The rows that stay open, those farthest off first.
@@ -446,7 +455,8 @@ impl FailureKind {
             | FailureKind::Undecided { .. }
             | FailureKind::StepTooSmall { .. }
             | FailureKind::StepTooShort { .. }
-            | FailureKind::StepTooLong { .. } => FailureSource::Integration,
+            | FailureKind::StepTooLong { .. }
+            | FailureKind::StepUnresolved { .. } => FailureSource::Integration,
             FailureKind::NoEquilibrium { .. }
             | FailureKind::NoStateEquilibrium { .. }
             | FailureKind::EquilibriumNotConverged { .. } => FailureSource::Equilibrium,

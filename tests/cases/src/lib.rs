@@ -6,7 +6,7 @@
 //! | code | found by | target |
 //! |---|---|---|
 //! | `k1` to `k8` | kinematics of independent texts, in `f64` and `f32` | `kinematics`, `assemblies`; of the language `language` |
-//! | `d1` to `d31` | motions from forces of independent texts | `singular`, `events`, `friction`, `stiff`, `starts`; of the language `language` |
+//! | `d1` to `d32` | motions from forces of independent texts | `singular`, `events`, `friction`, `stiff`, `starts`; of the language `language` |
 //! | `t6` to `t8` | a line of the library changed on purpose, which no test noticed | the target of that line |
 //!
 //! The tests of this package are compiled without optimisation, which takes a fifth of the time. Those of very many steps stand in the

@@ -4,7 +4,7 @@
 //! takes the same steps. The works of all such runs add up to the work of all supplies but for rounding, for any instants.
 
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, Counts, Formulation, Instant, IntegratorState, Method, Model, Solved,
+    AugmentedLagrangian, Counts, Extrapolated, Formulation, Instant, IntegratorState, Method, Model, Solved,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure};
 
@@ -233,8 +233,28 @@ impl<X> Counted<'_, X> {
         moved(model, start, instant.t, |model| self.power(model, instant.t, &instant.y, &instant.solved))
     }
 
-    /// The work (J) of a step of `h` (s) by the thirds and the whole step that [`Quadrature::Extrapolated`] goes through.
+    /// The work (J) of a step of `h` (s) by the parts that [`Extrapolated`] goes through.
     fn extrapolated<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        from: &Instant<f64, N, M, S::States>,
+        h: f64,
+    ) -> Result<f64, Failure> {
+        let mut parts = Vec::new();
+        Extrapolated
+            .step_in_parts(model, (from, h), &mut Counts::default(), |at, part| parts.push((*at, part)))?;
+        let mut work = 0.0;
+        for (index, (mut at, part)) in parts.into_iter().enumerate() {
+            if index > 0 {
+                at.solved.rate.work = self.power_at(model, from.t, &at);
+            }
+            work += moved(model, from.t, at.t, |model| self.of_thirds(model, &at, part))?;
+        }
+        Ok(work)
+    }
+
+    /// The work (J) of a step of `h` (s) by the thirds and the whole step that [`Quadrature::Extrapolated`] goes through.
+    fn of_thirds<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         &self,
         model: &Model<'_, S, f64, N, M>,
         from: &Instant<f64, N, M, S::States>,
