@@ -299,7 +299,7 @@ pub fn study(
     let third_leg;
     let compared = make(&values);
     let doubles = match &compared {
-        Comparable::Still | Comparable::Sticks(_) => Vec::new(),
+        Comparable::Still => Vec::new(),
         Comparable::Driven(mechanism) => mechanism.doubles.clone(),
         Comparable::Moved(mechanism) => mechanism.doubles.clone(),
     };
@@ -315,12 +315,6 @@ pub fn study(
             let name = target.name();
             return Err(CommandError::Usage(without(format!(
                 "`{name}` has no motion: its rows leave coordinates free, and it has no masses"
-            ))));
-        }
-        Comparable::Sticks(friction) => {
-            return Err(CommandError::Usage(without(format!(
-                "`{friction}` is a friction that sticks, a rigid contact or an event, and no reference solution follows it; compare \
-                 the smooth law: `speed` in place of `sticks`, a contact with `stiffness`, a scene without the event"
             ))));
         }
         Comparable::Driven(_) if arguments.is_for_forces() => return Err(driven(&target)),
@@ -357,7 +351,7 @@ pub fn study(
                     0 => String::new(),
                     events => format!(", {events} contacts"),
                 };
-                let words = match reference.stuck {
+                let words = match &reference.stuck {
                     None => {
                         format!("{} steps of tolerance {:.0e}{events}", reference.steps, reference.tolerance)
                     }
@@ -368,8 +362,19 @@ pub fn study(
                 };
                 fact(&format!("{} reference", leg.name()), words);
             }
+            if let Some(effect) = found.effect {
+                let words = format!(
+                    "of one kind: two explicit methods of the runtime, of different order and formulation. The runtime alone decides \
+                     the modes of `{effect}`"
+                );
+                fact("references", words);
+            }
             let alone = found.references.iter().any(|(_, reference)| reference.stuck.is_some());
-            let how = if alone { ", by coarser steps: one reference alone" } else { "" };
+            let how = match (alone, found.effect) {
+                (true, _) => ", by coarser steps: one reference alone",
+                (false, Some(_)) => ", ten times the difference of legs of one kind",
+                (false, None) => "",
+            };
             let words = found.width.map_or_else(
                 || "not known: one reference alone".to_string(),
                 |width| format!("{}{how}", two_digits(width)),

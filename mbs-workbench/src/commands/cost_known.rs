@@ -55,6 +55,8 @@ pub fn of_moved(known: &KnownStates, study: &MovedStudy) -> ThirdLeg {
             name: match leg {
                 Leg::Extrapolated => "extrapolated reference",
                 Leg::Collocated => "collocated reference",
+                Leg::Order8 => "explicit reference of order 8",
+                Leg::Order5 => "explicit reference of order 5",
             },
             instants: reference
                 .shots

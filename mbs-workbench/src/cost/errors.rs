@@ -100,6 +100,28 @@ struct Matched {
     of_run: f64,
     exact: f64,
     closes: bool,
+    jumps: bool,
+}
+
+impl Matched {
+    /// `true` at a time (s) at which one of both motions has jumped and the other one has not.
+    fn is_between(&self, t: f64) -> bool {
+        self.jumps && (t - self.exact) * (t - self.of_run) <= 0.0
+    }
+}
+
+/// Time between impacts, over that of the last one, below which they are the end of infinitely many: types of number count them differently.
+const ACCUMULATED: f64 = 1e-6;
+
+/// `true` for as many changes, or for impacts of which one motion has more at the end of infinitely many.
+fn are_as_many(times: &[f64], exact: &[&Contact]) -> bool {
+    let exact_times: Vec<f64> = exact.iter().map(|contact| contact.t).collect();
+    let [few, many] = if times.len() < exact.len() { [times, &exact_times] } else { [&exact_times, times] };
+    let jumps = exact.iter().all(|contact| contact.jumps);
+    let last = many.last().copied().unwrap_or(0.0);
+    let rest = many.get(few.len().saturating_sub(1)..).unwrap_or(&[]);
+    let is_end = rest.windows(2).all(|pair| pair[1] - pair[0] <= ACCUMULATED * last);
+    few.len() == many.len() || jumps && !few.is_empty() && is_end
 }
 
 /// The `k`th change of each contact in a run and in the reference; none where a run has more changes or fewer.
@@ -107,13 +129,14 @@ fn matched(found: &[Vec<f64>], reference: &[Contact]) -> Option<Vec<Matched>> {
     let mut pairs = Vec::new();
     for (index, times) in found.iter().enumerate() {
         let own: Vec<&Contact> = reference.iter().filter(|contact| contact.index == index).collect();
-        if own.len() != times.len() {
+        if !are_as_many(times, &own) {
             return None;
         }
         let of = |(exact, time): (&&Contact, &f64)| Matched {
             of_run: *time,
             exact: exact.t,
             closes: exact.closes,
+            jumps: exact.jumps,
         };
         pairs.extend(own.iter().zip(times).map(of));
     }
@@ -162,7 +185,10 @@ pub fn errors(
         let rate = if shifted < plain { shifted } else { plain };
         let reaction = seen.observed.reaction.iter().zip(&shot.observed.reaction).zip(&sizes.scales);
         let reaction = reaction.map(|((r, exact), scale)| apart(*r, *exact) * scale / sizes.reaction);
-        errors.rate = worse(errors.rate, rate);
+        // There both have no velocity in common.
+        if !pairs.iter().any(|pair| pair.is_between(shot.at.t.high)) {
+            errors.rate = worse(errors.rate, rate);
+        }
         errors.second = worse(errors.second, reaction.fold(0.0, worse));
         let multiplier = of_multipliers(seen, shot, sizes, index * stride);
         if !multiplier.is_nan() {
@@ -198,7 +224,7 @@ mod tests {
     use super::*;
 
     fn contact(t: f64, index: usize, closes: bool) -> Contact {
-        Contact { t, index, closes }
+        Contact { t, index, closes, jumps: false }
     }
 
     #[test]
@@ -219,5 +245,16 @@ mod tests {
         assert_eq!(near(0.15), Some(1e3));
         assert_eq!(near(0.21), Some(3e3));
         assert_eq!(near(0.4), None);
+    }
+
+    #[test]
+    fn impacts_at_the_end_of_infinitely_many_need_no_counterpart() {
+        let jump = |t: f64| Contact { jumps: true, ..contact(t, 0, true) };
+        let reference = [jump(1.0), jump(1.5), jump(1.5 + 1e-8), jump(1.5 + 1.1e-8)];
+        let pairs = matched(&[vec![1.0 + 1e-5, 1.5]], &reference).expect("the rest is the end");
+        assert_eq!(pairs.len(), 2);
+        assert!(pairs[0].is_between(1.0 + 5e-6) && !pairs[0].is_between(1.1));
+        assert!(matched(&[vec![1.0]], &reference).is_none());
+        assert!(matched(&[vec![]], &reference).is_none());
     }
 }

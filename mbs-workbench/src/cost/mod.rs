@@ -7,6 +7,8 @@ pub mod errors;
 pub mod kernels;
 pub mod kinematics;
 pub mod moved;
+#[cfg(test)]
+mod one_kind_tests;
 pub mod peers;
 pub mod perturbed;
 pub mod picture;

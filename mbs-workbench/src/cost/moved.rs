@@ -8,6 +8,7 @@ use crate::cost::errors::{Sizes, apart, between, errors};
 use crate::cost::points::{COARSEST, Errors, Expected, Outcome, Point, Verdict, WRONG, judge_by_order};
 use crate::cost::reference::linear::worse;
 use crate::cost::reference::motion::Stuck;
+use crate::cost::reference::one_kind::{method as method_of, of_one_kind};
 use crate::cost::reference::{Leg, Reference, Shot, reference};
 use crate::double_double::DoubleDouble as D;
 use crate::erased::costs::MovedCosts;
@@ -34,6 +35,9 @@ const RUNS: u32 = 5;
 
 /// Width of a reference alone over its difference from one of coarser steps, whose tolerance is 1e3 times as large at least.
 const ALONE: f64 = 1e-2;
+
+/// Width of references of one kind over their difference: faults that both share do not show in it.
+const ONE_KIND: f64 = 10.0;
 
 /// Differences of the references up to which they agree.
 const AGREED: f64 = 1e-6;
@@ -63,8 +67,10 @@ pub struct MovedStudy {
     pub points: Vec<Point>,
     /// References by kind.
     pub references: Vec<(Leg, Reference)>,
-    /// Difference of the references in the judged quantity. Of one alone a hundredth of its difference from one of coarser steps; none
-    /// where there is no such one.
+    /// The first effect with modes, where the references are of one kind.
+    pub effect: Option<&'static str>,
+    /// Difference of the references in the judged quantity, ten times that of references of one kind. Of one alone a hundredth of its
+    /// difference from one of coarser steps; none where there is no such one.
     pub width: Option<f64>,
     /// Instants (s), at equal distances.
     pub times: Vec<f64>,
@@ -112,27 +118,33 @@ pub fn moved_study(
     let double = double.ok_or_else(|| no_reference("there are no runs in f64".to_string()))?;
     let [q, qd] = double.1.start(0.0).map_err(|failure| no_reference(failure.to_string()))?;
     let (mut references, mut coarser) = (Vec::new(), Vec::new());
-    for leg in [Leg::Extrapolated, Leg::Collocated] {
+    for leg in legs(mechanism) {
         progress(&format!("{} reference", leg.name()), 0.0);
         let (fine, coarse) = best(mechanism, leg, (&q, &qd), &times, extent);
         coarser.extend(coarse.map(|coarse| (leg, coarse)));
         references.push((leg, fine));
     }
+    let effect = mechanism.one_kind.as_ref().map(|of| of.effect);
     let whole = |reference: &Reference| reference.stuck.is_none();
     if !references.iter().any(|(_, reference)| whole(reference)) {
         let reasons = references.iter().map(|(leg, reference)| {
             let t = reference.shots.last().map_or(0.0, |shot| shot.at.t.high);
-            let why = match reference.stuck {
+            let why = match &reference.stuck {
                 Some(Stuck::OutOfTime) => "takes too long; `--until` ends it earlier",
+                Some(Stuck::Refused(failure)) => failure,
                 _ => "needs steps that are too small",
             };
             format!("the {} reference {why} (it came to t = {t:.4} s)", leg.name())
         });
-        return Err(no_reference(reasons.collect::<Vec<_>>().join("; ")));
+        let reasons = reasons.collect::<Vec<_>>().join("; ");
+        return Err(no_reference(match effect {
+            Some(effect) => format!("the runtime alone decides the modes of `{effect}`, and {reasons}"),
+            None => reasons,
+        }));
     }
     let metric = [mechanism.exact.scales(), mechanism.exact.row_scales()];
     let of = |leg: Leg| references.iter().find(|(own, reference)| *own == leg && whole(reference));
-    let any = of(Leg::Collocated).or_else(|| of(Leg::Extrapolated)).map(|(_, reference)| reference);
+    let any = references.iter().rev().find(|(_, reference)| whole(reference)).map(|(_, reference)| reference);
     let any = any.ok_or_else(|| no_reference("no reference is whole".to_string()))?;
     let double = mechanism.runs.iter().find(|(numbers, _)| *numbers == Numbers::Double);
     let unique = |t: f64, q: &[f64]| double.map_or_else(Vec::new, |(_, runs)| runs.unique(t, q));
@@ -144,8 +156,9 @@ pub fn moved_study(
         return Err(no_reference("the watched outputs keep one value, which every run has".to_string()));
     }
     let sizes = Sizes::of(any, metric, &unique);
-    let pair = match (of(Leg::Extrapolated), of(Leg::Collocated)) {
-        (Some((_, a)), Some((_, b))) => Some(([a, b], 1.0)),
+    let [one, other] = legs(mechanism);
+    let pair = match (of(one), of(other)) {
+        (Some((_, a)), Some((_, b))) => Some(([a, b], if effect.is_some() { ONE_KIND } else { 1.0 })),
         (Some((leg, fine)), None) | (None, Some((leg, fine))) => {
             coarser.iter().find(|(own, _)| own == leg).map(|(_, coarse)| ([fine, coarse], ALONE))
         }
@@ -160,10 +173,7 @@ pub fn moved_study(
         let agreed = times.get(agreed.saturating_sub(1)).copied().unwrap_or(0.0);
         return Err(no_reference(differing(agreed, &extent.watched)));
     }
-    let judge = |method: MotionMethod| {
-        let other = if method.is_implicit() { Leg::Extrapolated } else { Leg::Collocated };
-        of(other).map_or(any, |(_, reference)| reference)
-    };
+    let judge = |method: MotionMethod| of(judging(mechanism, method)).map_or(any, |(_, reference)| reference);
     let mut points: Vec<Point> = Vec::new();
     let mut longest = extent.longest;
     let methods = if extent.methods.is_empty() { MotionMethod::all() } else { extent.methods.clone() };
@@ -190,15 +200,36 @@ pub fn moved_study(
         }
     }
     points.iter_mut().for_each(|point| point.time = point.effort.elapsed.as_secs_f64() * 1e6 / until);
-    Ok(MovedStudy { points, references, width, times, sizes })
+    Ok(MovedStudy { points, references, effect, width, times, sizes })
+}
+
+/// References of a mechanism, the one that more methods are judged by last.
+fn legs(mechanism: &MovedCosts) -> [Leg; 2] {
+    match mechanism.one_kind {
+        Some(_) => [Leg::Order8, Leg::Order5],
+        None => [Leg::Extrapolated, Leg::Collocated],
+    }
+}
+
+/// The reference of the other kind than a method; where both are of one kind, that of the other formulation.
+fn judging(mechanism: &MovedCosts, method: MotionMethod) -> Leg {
+    let [first, last] = legs(mechanism);
+    let formulation = |method: MotionMethod| match method {
+        MotionMethod::Explicit(name, _) => Some(name),
+        MotionMethod::Implicit(_) => None,
+    };
+    let is_of_last = match &mechanism.one_kind {
+        Some(of) => formulation(method) == formulation(method_of(of, last)),
+        None => method.is_implicit(),
+    };
+    if is_of_last { first } else { last }
 }
 
 impl MovedStudy {
     /// The reference that runs of others are judged by.
     pub fn judge(&self) -> Option<&Reference> {
-        let whole =
-            |leg: Leg| self.references.iter().find(|(own, found)| *own == leg && found.stuck.is_none());
-        whole(Leg::Collocated).or_else(|| whole(Leg::Extrapolated)).map(|(_, reference)| reference)
+        let whole = self.references.iter().rev().find(|(_, found)| found.stuck.is_none());
+        whole.map(|(_, reference)| reference)
     }
 
     /// Reference metric of the coordinates: N.
@@ -260,15 +291,18 @@ fn best(
     extent: &Extent,
 ) -> (Reference, Option<Reference>) {
     let budget = Duration::from_secs_f64(extent.reference);
+    let least =
+        if mechanism.doubles.is_empty() { extent.tolerance } else { extent.tolerance.max(LEAST_OF_DOUBLES) };
+    if let Some(of) = &mechanism.one_kind {
+        return of_one_kind(of, leg, times, least, budget.mul_f64(2.0));
+    }
     let exact = mechanism.exact.as_mut();
     // A coarse one first tells if the fine one will be in time.
     let coarse = reference(exact, leg, start, times, 1e-10, budget);
     if coarse.stuck.is_some() {
         return (coarse, None);
     }
-    let tolerance =
-        if mechanism.doubles.is_empty() { extent.tolerance } else { extent.tolerance.max(LEAST_OF_DOUBLES) };
-    let fine = reference(exact, leg, start, times, tolerance, budget.mul_f64(2.0));
+    let fine = reference(exact, leg, start, times, least, budget.mul_f64(2.0));
     if fine.stuck.is_none() { (fine, Some(coarse)) } else { (coarse, None) }
 }
 
@@ -452,6 +486,8 @@ impl Leg {
         match self {
             Leg::Extrapolated => "extrapolated",
             Leg::Collocated => "collocated",
+            Leg::Order8 => "explicit (order 8)",
+            Leg::Order5 => "explicit (order 5)",
         }
     }
 }

@@ -167,7 +167,7 @@ fn a_contact_is_located_by_both_legs() {
     let (a, b) = (run(Leg::Extrapolated), run(Leg::Collocated));
     for leg in [&a, &b] {
         // Touch at 0.1428 s, off again about 25 ms later.
-        assert_eq!((leg.stuck, leg.contacts.len()), (None, 2));
+        assert_eq!((&leg.stuck, leg.contacts.len()), (&None, 2));
         // The floor's energy is no potential of the text.
         let open = leg.shots.iter().filter(|shot| shot.at.q[0].high > 0.0);
         let drift: Vec<f64> = open.map(|shot| (shot.observed.energy.high - 0.981).abs()).collect();
@@ -313,6 +313,7 @@ fn a_fault_in_one_weight_lifts_its_curve() {
     let run = Runs::<Pendulum, Faulty, f64, 2, 1>::of(Pendulum::default());
     let mut faulty = MovedCosts {
         exact: Box::new(exact()),
+        one_kind: None,
         runs: vec![(Numbers::Double, Box::new(run))],
         doubles: Vec::new(),
     };

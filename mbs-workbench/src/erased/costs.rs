@@ -15,8 +15,6 @@ use crate::setting::Numbers;
 pub enum Comparable {
     /// Its rows leave it free and nothing moves it.
     Still,
-    /// Friction with stiction, by its name: reference solutions are of forces that are functions of the state.
-    Sticks(&'static str),
     /// Drives move it.
     Driven(Box<DrivenCosts>),
     /// Forces move it.
@@ -27,7 +25,7 @@ impl Comparable {
     /// With the names of functions that exist in `f64` alone.
     pub fn with_doubles(mut self, names: Vec<&'static str>) -> Self {
         match &mut self {
-            Comparable::Still | Comparable::Sticks(_) => {}
+            Comparable::Still => {}
             Comparable::Driven(mechanism) => mechanism.doubles = names,
             Comparable::Moved(mechanism) => mechanism.doubles = names,
         }
@@ -45,10 +43,22 @@ pub struct DrivenCosts {
     pub doubles: Vec<&'static str>,
 }
 
+/// Effect with modes, which the runtime alone decides, with the runs that references are made of.
+pub struct OneKind {
+    /// The first of the text: a friction that sticks, a rigid contact or an event.
+    pub effect: &'static str,
+    /// Number of its contacts with stiffness, which stand before the rigid ones.
+    pub soft: usize,
+    /// In double-double numbers.
+    pub runs: Box<dyn TimedRuns>,
+}
+
 /// A mechanism that forces move.
 pub struct MovedCosts {
     /// In double-double numbers.
     pub exact: Box<dyn ExactEquations>,
+    /// Runs for references of one kind, where forces are no functions of the state.
+    pub one_kind: Option<OneKind>,
     /// By type of number.
     pub runs: Vec<(Numbers, Box<dyn TimedRuns>)>,
     /// Functions of the caller that exist in `f64` alone.
@@ -119,11 +129,10 @@ where
     let single = InNumbers::<f32>::in_numbers(mechanism).reveal(InOne::<f32>(PhantomData));
     match InNumbers::<D>::in_numbers(mechanism).reveal(InExact) {
         ExactForm::Still => Comparable::Still,
-        ExactForm::Sticks(friction) => Comparable::Sticks(friction),
-        ExactForm::Moved(exact) => {
+        ExactForm::Moved(exact, one_kind) => {
             let runs = [(Numbers::Double, double.moved), (Numbers::Single, single.moved)];
             let runs = runs.into_iter().filter_map(|(numbers, runs)| Some((numbers, runs?))).collect();
-            Comparable::Moved(Box::new(MovedCosts { exact, runs, doubles: Vec::new() }))
+            Comparable::Moved(Box::new(MovedCosts { exact, one_kind, runs, doubles: Vec::new() }))
         }
         ExactForm::Driven(exact) => {
             let runs = [
@@ -152,17 +161,24 @@ where
 /// Form of a mechanism in double-double numbers.
 enum ExactForm {
     Still,
-    Sticks(&'static str),
     Driven(Box<dyn ExactPositions>),
-    Moved(Box<dyn ExactEquations>),
+    Moved(Box<dyn ExactEquations>, Option<OneKind>),
 }
 
 impl ExactForm {
-    fn moved<S: Dynamic<D, N, M> + 'static, const N: usize, const M: usize>(mechanism: S) -> Self {
-        match S::SET_VALUED.first().or(S::EVENTS.first()) {
-            Some(friction) => ExactForm::Sticks(friction.name),
-            None => ExactForm::Moved(Box::new(Exact::<S, N, M>::of(mechanism))),
+    fn moved<S, const N: usize, const M: usize>(mechanism: S) -> Self
+    where
+        S: Dynamic<D, N, M> + Partitioned<D, N, M> + Clone + 'static,
+    {
+        let mut one_kind = None;
+        // A text without modes compiles no runs in these numbers.
+        if const { S::HAS_MODES }
+            && let Some(entry) = S::SET_VALUED.first().or(S::EVENTS.first())
+        {
+            let runs = Box::new(Runs::<S, ExplicitOnly, D, N, M>::of(mechanism.clone()));
+            one_kind = Some(OneKind { effect: entry.name, soft: S::CONTACTS.len(), runs });
         }
+        ExactForm::Moved(Box::new(Exact::<S, N, M>::of(mechanism)), one_kind)
     }
 }
 

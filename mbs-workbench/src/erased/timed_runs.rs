@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Determinacy, Direction, Explicit, Extrapolated, Formulation,
-    GeneralizedAlpha, Method, MethodWarning, Penalty, Projection, Simulation, Tolerance, Unstabilized,
-    VelocityTransformation,
+    GeneralizedAlpha, Method, MethodWarning, Penalty, Projection, SetValuedRow, Simulation, Tolerance,
+    Unstabilized, VelocityTransformation, WithSetValuedRows,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure, FailureKind, Partitioned, Real};
 
@@ -83,7 +83,7 @@ pub trait TimedRuns {
     ) -> Result<Effort, Failure>;
     /// `true` for each multiplier that is unique at `t` (s) and coordinates `q` (N): M. None is where that is not known.
     fn unique(&self, t: f64, q: &[f64]) -> Vec<bool>;
-    /// Times (s) at which each contact closes or opens in the run of these settings.
+    /// Times (s) at which each contact closes or opens in the run of these settings, then those at which each rigid one closes.
     ///
     /// # Errors
     /// Those of the run.
@@ -198,7 +198,7 @@ where
         match purpose {
             Purpose::Contacts(found) => {
                 // A text without contacts compiles no search.
-                if const { !S::CONTACTS.is_empty() } {
+                if const { !S::CONTACTS.is_empty() || S::HAS_RIGID_CONTACTS } {
                     for (contact, times) in found.iter_mut().enumerate() {
                         let mut own = run.clone();
                         let gaps = Gaps::of(&own, contact);
@@ -241,7 +241,7 @@ where
                 return Ok(effort(&run, h, began));
             }
             Purpose::Contacts(found) => {
-                if const { !S::CONTACTS.is_empty() } {
+                if const { !S::CONTACTS.is_empty() || S::HAS_RIGID_CONTACTS } {
                     for (contact, times) in found.iter_mut().enumerate() {
                         let mut own = run.clone();
                         let gaps = Gaps::of(&own, contact);
@@ -302,12 +302,30 @@ impl<S, R> Gaps<S, R> {
         }
         let parameters = mechanism.parameters();
         let position = mechanism.position(&parameters, q, t);
+        if let Some(row) = self.contact.checked_sub(S::CONTACTS.len()) {
+            // Multipliers and states have no part in a gap.
+            let states = mechanism.start_states(&parameters);
+            let none = [R::constant(0.0); M];
+            return mechanism.set_valued_rows(&parameters, &position, qd, &states, &none, GapOf(row));
+        }
         let (mut index, mut found) = (0, R::constant(f64::NAN));
         mechanism.gaps(&parameters, &position, qd, |gap| {
             found = if index == self.contact { gap.gap } else { found };
             index += 1;
         });
         found
+    }
+}
+
+/// The gap of a rigid contact by its index among the rows of frictions and rigid contacts; a constant for a friction.
+struct GapOf(usize);
+
+impl<R: Real, const N: usize> WithSetValuedRows<R, N> for GapOf {
+    type Output = R;
+
+    fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) -> R {
+        let row = rows.get(self.0).filter(|row| row.restitution.is_some());
+        row.map_or(R::constant(1.0), |row| row.place)
     }
 }
 
@@ -323,7 +341,9 @@ where
     R: Real,
 {
     fn start(&self, t: f64) -> Result<[Vec<f64>; 2], Failure> {
-        let method: AnyMethod<'_, S, R, N, M> = &AugmentedLagrangian;
+        // Implicit methods know no modes.
+        let projected = Explicit::new(I::rule(Rule::RungeKutta4), Projection::default());
+        let method: AnyMethod<'_, S, R, N, M> = if S::HAS_MODES { &projected } else { &AugmentedLagrangian };
         let run = Simulation::start_from_text(self.mechanism.clone(), method, R::constant(t))?;
         Ok([run.q(), run.qd()].map(|values| values.iter().map(|value| value.to_f64()).collect()))
     }
@@ -364,7 +384,8 @@ where
         resolution: Resolution,
         times: &[f64],
     ) -> Result<Vec<Vec<f64>>, Failure> {
-        let mut found = vec![Vec::new(); S::CONTACTS.len()];
+        let rigid = if S::HAS_RIGID_CONTACTS { S::SET_VALUED.len() } else { 0 };
+        let mut found = vec![Vec::new(); S::CONTACTS.len() + rigid];
         if !found.is_empty() {
             self.moved(method, resolution, times, Purpose::Contacts(&mut found))?;
         }

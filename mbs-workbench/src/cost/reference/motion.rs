@@ -17,6 +17,10 @@ pub enum Leg {
     Extrapolated,
     /// Implicit, on velocities: without γ.
     Collocated,
+    /// [`DormandPrince8`](mbs_runtime::dynamics::DormandPrince8) with projection, of the runtime in double-double numbers.
+    Order8,
+    /// [`DormandPrince5`](mbs_runtime::dynamics::DormandPrince5) with another formulation, of the runtime in double-double numbers.
+    Order5,
 }
 
 /// The state at an instant with what settings are compared in.
@@ -41,6 +45,8 @@ pub struct Contact {
     pub index: usize,
     /// `true` where it closes.
     pub closes: bool,
+    /// `true` where velocities jump: a rigid contact.
+    pub jumps: bool,
 }
 
 /// A reference solution.
@@ -59,12 +65,14 @@ pub struct Reference {
 }
 
 /// Reason why a reference solution ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stuck {
     /// Steps became too small.
     SmallSteps,
     /// No time is left.
     OutOfTime,
+    /// A method of the runtime ends it, with the failure in words.
+    Refused(String),
 }
 
 /// Accelerations and multipliers at the end of a step.
@@ -238,8 +246,8 @@ pub fn reference(
     budget: Duration,
 ) -> Reference {
     let mut method: Box<dyn StepMethod> = match leg {
-        Leg::Extrapolated => Box::new(Extrapolated),
         Leg::Collocated => Box::new(Collocated::default()),
+        _ => Box::new(Extrapolated),
     };
     let exact = |values: &[f64]| values.iter().map(|value| D::constant(*value)).collect::<Vec<D>>();
     let first = times.first().copied().unwrap_or(0.0);
@@ -357,7 +365,10 @@ impl Course {
         }
         method.restart();
         self.take(equations, end)?;
-        Some((0.25, Some(Contact { t: self.at.t.high, index: crossed, closes: before[crossed] > 0.0 })))
+        Some((
+            0.25,
+            Some(Contact { t: self.at.t.high, index: crossed, closes: before[crossed] > 0.0, jumps: false }),
+        ))
     }
 
     /// A step with its end on the rows, if its error is small enough.
