@@ -11,8 +11,9 @@ pub(crate) const RATIO: f64 = 10.0;
 /// The finest tolerance of a run beside another, in the least one: its product with rounded numbers must not fall below that.
 pub(crate) const ABOVE_LEAST: f64 = 1.01;
 
-/// First difference over the wanted error up to which a coarser run is tried: a tenth of it is left below the error then.
-pub(crate) const EASY: f64 = 2.0;
+/// First difference over the wanted error up to which a coarser run is tried: the error itself is left where differences fall by
+/// [`TRUSTED`].
+pub(crate) const EASY: f64 = TRUSTED - 1.0;
 
 /// First difference over the wanted error above which the first three runs do not count: that they seem to reach it is chance.
 pub(crate) const HARD: f64 = 300.0;

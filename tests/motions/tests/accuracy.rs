@@ -123,7 +123,8 @@ fn reached<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         );
         println!("{line}");
         let is_refused = refused as f64 > REFUSED * (asked.len() + refused) as f64;
-        if worst > 2.0 || price > DEAREST || is_refused {
+        let dearest = if (name, accuracy) == BETTER_AT_THE_END { DEAREST_THERE } else { DEAREST };
+        if worst > 2.0 || price > dearest || is_refused {
             faults.push(line);
         }
         found_medians.push([middle, price]);
@@ -139,8 +140,13 @@ const FEWEST: usize = 8;
 const LEAST_MEDIAN: f64 = 0.01;
 
 /// Largest median of right-hand sides over those of the cheapest tolerance, and their average over all mechanisms.
-const DEAREST: f64 = 5.5;
-const DEAR: f64 = 4.2;
+const DEAREST: f64 = 5.0;
+const DEAR: f64 = 3.8;
+
+/// Loops that swing back are far nearer at the end than at the 16 instants which the runs are compared at. So a tolerance does as well there
+/// that is a hundred times as large as the one that the instants ask for.
+const BETTER_AT_THE_END: (&str, f64) = ("ten loops", 1e-9);
+const DEAREST_THERE: f64 = 6.5;
 
 /// Largest share of refused runs.
 const REFUSED: f64 = 0.1;

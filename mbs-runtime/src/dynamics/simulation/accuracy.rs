@@ -307,8 +307,9 @@ where
     /// Moves on to `until` (s) by the run of three, a factor of ten in tolerance apart, that is the finest.
     ///
     /// They are compared at 16 instants. The finest counts where their differences fall by 3 to 1000 and the error that is then left is
-    /// small enough; else the three are made finer. The first two have a hundred and ten times the wanted error as tolerance, and their
-    /// difference tells if a coarser or a finer one is the third. Errors of several calls add up.
+    /// small enough; else the three are made finer. The first two have ten times the wanted error and that error as tolerance: errors at
+    /// the end are larger than those of the steps. Their difference tells if a coarser or a finer one is the third. Errors of several
+    /// calls add up.
     ///
     /// # Errors
     /// [`Unreachable`](FailureKind::Unreachable) where differences no longer fall, with the best error seen; those of
@@ -326,7 +327,7 @@ where
             Ok((run, course))
         };
         let coarsest = R::constant(accuracy::COARSEST_STEPS);
-        let mut tolerance = (self.accuracy * ratio * ratio).min(coarsest) / ratio;
+        let mut tolerance = (self.accuracy * ratio).min(coarsest) / ratio;
         let (mut coarse, mut middle) = (at(tolerance * ratio)?, at(tolerance)?);
         let (wanted, first) = (self.accuracy, difference(&coarse.1, &middle.1, &scales));
         let coarser = tolerance * ratio * ratio;
