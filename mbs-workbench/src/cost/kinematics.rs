@@ -168,7 +168,13 @@ pub fn driven_study(
         }
         let found = exactly(mechanism.exact.as_ref(), &placed.motion[0], placed.t, h);
         let (exact, differs) = found.ok_or_else(|| {
-            no_reference(format!("a position at t = {:.4} s does not close to all digits", placed.t))
+            let open = format!("a position at t = {:.4} s does not close to all digits", placed.t);
+            no_reference(match mechanism.exact.row_with_width() {
+                Some(row) => format!(
+                    "{open}: `{row}` follows from other rows within a width, so nothing fulfils all of them; compare a scene without it"
+                ),
+                None => open,
+            })
         })?;
         apart = [worse(apart[0], differs[0]), worse(apart[1], differs[1])];
         reference.push(exact);

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use mbs_runtime::FailureKind;
 use mbs_runtime::dynamics::ErrorEstimate;
 
 use crate::cost::errors::{Sizes, apart, between, errors};
@@ -357,6 +358,10 @@ fn curve(
                     perturbed: None,
                 });
                 coarser = Coarser::default();
+                // Finer steps do not change what a method knows of the text.
+                if matches!(failure.kind, FailureKind::Stiction { .. } | FailureKind::EventOfMotion { .. }) {
+                    break;
+                }
                 continue;
             }
         };

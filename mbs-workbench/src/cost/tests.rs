@@ -367,3 +367,24 @@ fn multipliers_are_compared_where_they_are_unique_alone() {
     let errors = best(&study);
     assert!(errors.multiplier.is_nan() && errors.second < 1e-9 && errors.judged < 1e-9, "{errors:?}");
 }
+
+mbs_runtime::mechanism! {
+    /// A slide that two drawings hold, which differ by a misfit.
+    pub mechanism Misfitting;
+    param misfit: m = 10um;
+    coord x: m = 0;
+    coord y: m = 0;
+    drive slide: x == 1 [m/s]*t;
+    constraint follows { y == x; }
+    constraint holds redundant within 20um { y == x + misfit; }
+}
+
+#[test]
+fn a_row_that_contradicts_others_within_its_width_is_the_reason_of_a_refusal() {
+    let Comparable::Driven(mut mechanism) = comparable(&Misfitting::default()) else {
+        panic!("a drive moves it")
+    };
+    let refused = driven_study(&mut mechanism, (1.0, 0.01), Kernel::Own, &mut |_, _| ());
+    let reason = refused.expect_err("no position closes").reason;
+    assert!(reason.contains("`holds`") && reason.contains("within a width"), "{reason}");
+}

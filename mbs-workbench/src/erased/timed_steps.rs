@@ -178,6 +178,8 @@ pub trait ExactPositions {
     fn rows(&self, q: &[D], t: D) -> [Vec<D>; 2];
     /// Φ_t (M) and, for velocities `qd` (N), γ (M).
     fn rates(&self, q: &[D], qd: &[D], t: D) -> [Vec<D>; 2];
+    /// The first row that may contradict others by a width: `redundant within`.
+    fn row_with_width(&self) -> Option<&'static str>;
 }
 
 /// A mechanism in double-double numbers with its drives at a time.
@@ -234,5 +236,10 @@ impl<S: Kinematic<D, N, M>, const N: usize, const M: usize> ExactPositions for P
         let position = mechanism.position(&parameters, &array(q), t);
         let gamma = mechanism.gamma(&parameters, &position, &array(qd));
         [mechanism.phi_t(&parameters, &position).to_vec(), gamma.to_vec()]
+    }
+    fn row_with_width(&self) -> Option<&'static str> {
+        let widths = self.mechanism.widths(&self.mechanism.parameters());
+        let wide = widths.iter().position(|width| width.high > 0.0);
+        wide.and_then(|row| S::ROWS.get(row)).map(|row| row.name)
     }
 }
