@@ -113,6 +113,17 @@ fn derivative(value: &dyn Fn(D) -> Option<Vec<D>>, t: D, h: D) -> Option<Vec<D>>
     sum
 }
 
+/// Reason why there is no exact position at `t` (s), where the row `wide` may contradict others by a width.
+pub(super) fn open_rows(t: f64, wide: Option<&str>) -> String {
+    let open = format!("a position at t = {t:.4} s does not close to all digits");
+    match wide {
+        Some(row) => format!(
+            "{open}: `{row}` follows from other rows within a width, so nothing fulfils all of them; compare a scene without it"
+        ),
+        None => open,
+    }
+}
+
 /// Exact motion at `t` (s) next to the position `q`: rates by differences of positions, and the largest difference of the rates
 /// that Φ_t and γ give.
 fn exactly(exact: &dyn ExactPositions, q: &[f64], t: f64, h: D) -> Option<(Exactly, [f64; 2])> {
@@ -167,15 +178,8 @@ pub fn driven_study(
             progress("reference", 0.3 * index as f64 / followed.len() as f64);
         }
         let found = exactly(mechanism.exact.as_ref(), &placed.motion[0], placed.t, h);
-        let (exact, differs) = found.ok_or_else(|| {
-            let open = format!("a position at t = {:.4} s does not close to all digits", placed.t);
-            no_reference(match mechanism.exact.row_with_width() {
-                Some(row) => format!(
-                    "{open}: `{row}` follows from other rows within a width, so nothing fulfils all of them; compare a scene without it"
-                ),
-                None => open,
-            })
-        })?;
+        let (exact, differs) =
+            found.ok_or_else(|| no_reference(open_rows(placed.t, mechanism.exact.row_with_width())))?;
         apart = [worse(apart[0], differs[0]), worse(apart[1], differs[1])];
         reference.push(exact);
     }

@@ -3,7 +3,7 @@ use std::time::Duration;
 use mbs_runtime::dynamics::{DormandPrince8, Equation, FixedStep, Vector};
 use mbs_runtime::{Failure, InNumbers, Reveal, Scalar};
 
-use super::kinematics::driven_study;
+use super::kinematics::{driven_study, open_rows};
 use super::moved::{Extent, moved_study};
 use super::points::{Outcome, Verdict};
 use super::reference::{Leg, Reference, reference};
@@ -381,10 +381,14 @@ mbs_runtime::mechanism! {
 
 #[test]
 fn a_row_that_contradicts_others_within_its_width_is_the_reason_of_a_refusal() {
-    let Comparable::Driven(mut mechanism) = comparable(&Misfitting::default()) else {
+    let Comparable::Driven(mechanism) = comparable(&Misfitting::default()) else {
         panic!("a drive moves it")
     };
-    let refused = driven_study(&mut mechanism, (1.0, 0.01), Kernel::Own, &mut |_, _| ());
-    let reason = refused.expect_err("no position closes").reason;
-    assert!(reason.contains("`holds`") && reason.contains("within a width"), "{reason}");
+    let row = mechanism.exact.row_with_width();
+    assert_eq!(row, Some("holds"));
+    assert!(open_rows(0.0, row).contains("`holds` follows from other rows within a width"));
+    let Comparable::Driven(mechanism) = comparable(&CrankSlider::default()) else {
+        panic!("a drive moves it")
+    };
+    assert_eq!(mechanism.exact.row_with_width(), None);
 }
