@@ -114,10 +114,11 @@ fn oldest() -> Result<(), String> {
 }
 
 /// Benches against peers, with their packages.
-const BENCHES: [(&str, &str); 4] = [
+const BENCHES: [(&str, &str); 5] = [
     ("mbs-tests", "kinematics"),
     ("mbs-tests", "dynamics"),
     ("mbs-tests", "linkages"),
+    ("mbs-tests", "formulations"),
     ("mbs-motions", "valvetrain"),
 ];
 
