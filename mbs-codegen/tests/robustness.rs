@@ -391,8 +391,9 @@ fn the_texts_that_are_mutated_are_valid() {
 
 #[test]
 fn truncated_texts() {
+    let step = if cfg!(feature = "long") { 1 } else { 3 };
     for words in TEXTS.map(words) {
-        for length in 0..words.len() {
+        for length in (0..words.len()).step_by(step) {
             let mut text = joined(&words[..length]);
             check(&text);
             // The same with its brackets closed.
@@ -415,8 +416,9 @@ fn truncated_texts() {
 #[test]
 fn mutated_texts() {
     let mut random = Random(0x5EED_0001);
+    let rounds = if cfg!(feature = "long") { 1000 } else { 200 };
     for valid in TEXTS.map(words) {
-        for _ in 0..1000 {
+        for _ in 0..rounds {
             let mut text = valid.clone();
             for _ in 0..=random.below(4) {
                 let (place, other) = (random.below(text.len()), random.below(text.len()));
