@@ -269,7 +269,7 @@ fn words(text: &str) -> Vec<&str> {
     words
 }
 
-const SOUP: [&str; 110] = [
+const SOUP: [&str; 112] = [
     "const",
     "param",
     "input",
@@ -314,6 +314,8 @@ const SOUP: [&str; 110] = [
     "lambda",
     "effort",
     "lift",
+    "lift[0]",
+    "[m; 2](rad)",
     "d1",
     "mechanism",
     "pub",
