@@ -79,7 +79,7 @@
 //! |---|---|
 //! | `nalgebra` (default) | conversions to nalgebra's vectors and matrices of fixed size, `Matrices` |
 //! | `fma` | fused products in sine and cosine where the target has the instruction; links `std` |
-//! | `libm` | sine and cosine of the crate `libm`, bit for bit |
+//! | `libm` | sine, cosine and `atan2` of the crate `libm`, bit for bit |
 #![no_std]
 #![forbid(unsafe_code)]
 // No index needs a check that an optimiser would have to remove; proofs on linked binaries show that no panic is left (`tests/proofs`).

@@ -1,7 +1,7 @@
 //! CasADi and 50 digits against texts with declared functions, whose values both sides know.
 
 use mbs_runtime::mechanism;
-use mbs_workbench::verify::{CheckError, StandIn, check};
+use mbs_workbench::verify::{CheckError, NumberedStandIn, StandIn, check};
 
 mechanism! {
     /// Every place where a declared function can stand.
@@ -43,5 +43,33 @@ fn casadi_and_50_digits_confirm_declared_functions() {
 #[test]
 fn functions_in_the_wrong_places_are_found() {
     let swapped = check(Called::new(StandIn::<1>, StandIn::<0>, StandIn::<2>));
+    assert!(matches!(swapped, Err(CheckError::Differs(_))), "{swapped:?}");
+}
+
+mechanism! {
+    /// An array of functions behind one by itself and before another one.
+    pub mechanism Arrays;
+    param p: rad = 0.3;
+    function swing: rad(s), C3;
+    function lift: [m; 3](rad), C4, periodic TAU;
+    function push: N(m), C2;
+    coord x: rad = 0.1;
+    coord y: [m; 3];
+    coord z: m = 0.2;
+    drive first: x == swing(t);
+    constraint each {
+        for i in 0..3 { y[i] == lift[i](x) + lift[2 - i].d1(2*x + p)*sin(x); }
+    }
+    body slide { mass: 2kg, com: [z, 0] }
+    force pushed: push(z)*(1 + lift[1](x)/1m) on z;
+    out height: m = sum(i in 0..3: lift[i](x + i)*lift[i].d2(p))/1m;
+}
+
+#[test]
+fn casadi_and_50_digits_confirm_arrays_of_functions() {
+    let confirmed = check(Arrays::new(StandIn::<0>, NumberedStandIn::array(1), StandIn::<4>)).unwrap();
+    assert!(confirmed.casadi.functions.iter().any(|function| function.scale > 0.0), "{confirmed}");
+    let [first, second, third] = NumberedStandIn::array(1);
+    let swapped = check(Arrays::new(StandIn::<0>, [second, first, third], StandIn::<4>));
     assert!(matches!(swapped, Err(CheckError::Differs(_))), "{swapped:?}");
 }

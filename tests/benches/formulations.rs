@@ -1,17 +1,20 @@
 //! Formulations against each other in one run: whole motions by both pairs, as time at equal error.
 //!
 //! ```text
-//! cargo bench -p mbs-tests --bench formulations [NAME]
+//! cargo bench -p mbs-tests --bench formulations [NAME] [-- --docs]
 //! ```
 //!
 //! Each motion is integrated with tolerances in steps of ten. The error is the largest of coordinates, and of rates over ten
 //! spans, at four instants, against the velocity transformation at the least tolerance; of texts with redundant rows against the
 //! projection. Times are the least of seven rounds in which all take turns. The time at an error is interpolated between the
 //! logarithms of both. The table has the time of the default over that of each other formulation; those that do not reach an error
-//! have a dash.
+//! have a dash. `--docs` writes it next to this file.
 #![forbid(unsafe_code)]
 
+use std::fs;
 use std::hint::black_box;
+use std::path::Path;
+use std::process::ExitCode;
 use std::time::Instant;
 
 use mbs_runtime::dynamics::{
@@ -132,7 +135,7 @@ fn fronts(motions: &[Motion], reference: &[f64]) -> Vec<Front> {
     fronts
 }
 
-fn problem<S, const N: usize, const M: usize>(name: &str, end: f64, asked: Option<&str>)
+fn problem<S, const N: usize, const M: usize>(table: &mut String, name: &str, end: f64, asked: Option<&str>)
 where
     S: Dynamic<f64, N, M> + Default + 'static,
 {
@@ -147,7 +150,7 @@ where
     ];
     let exact = motions.iter().take(2).rev().find_map(|motion| motion(REFERENCE).ok());
     let Some(reference) = exact.or_else(|| motions[0](1e-12).ok()) else {
-        println!("| {name} | no reference |");
+        eprintln!("{name}: no reference");
         return;
     };
     let fronts = fronts(&motions, &reference);
@@ -157,26 +160,53 @@ where
             time_at(front, error).map_or("–".to_string(), |time| format!("{:.2}", own / time))
         });
         let ratios: Vec<String> = ratios.collect();
-        println!("| {name} | {error:.0e} | {:.3} | {} |", 1e3 * own, ratios.join(" | "));
+        let row = format!("| {name} | {error:.0e} | {:.3} | {} |\n", 1e3 * own, ratios.join(" | "));
+        print!("{row}");
+        table.push_str(&row);
     }
 }
 
-fn main() {
-    let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
-    let asked = asked.as_deref();
-    println!(
-        "| motion | error | default, ms | over velocity transformation | over Baumgarte | over order 5 |"
-    );
-    println!("|---|---|---|---|---|---|");
-    problem::<mechanisms::pendulum::Pendulum, 2, 1>("pendulum", 10.0, asked);
-    problem::<mechanisms::slider_crank_mass::CrankPistonReleased, 3, 2>("slider_crank", 0.6, asked);
-    problem::<mechanisms::andrews::Andrews, 7, 6>("andrews", 0.03, asked);
-    problem::<mechanisms::n_four_bar::NFourBar, 6, 5>("a02_2", 10.0, asked);
-    problem::<mechanisms::n_four_bar_10::NFourBar10, 22, 21>("a02_10", 10.0, asked);
-    problem::<mechanisms::bricard::Bricard, 23, 23>("bricard", 1.0, asked);
-    problem::<mechanisms::heavy_top::HeavyTop, 7, 4>("heavy_top", 0.5, asked);
-    problem::<mechanisms::car_axis::CarAxis, 4, 2>("car_axis", 3.0, asked);
-    problem::<mechanisms::governor::Governor, 16, 12>("governor", 0.1, asked);
-    problem::<Plate, 6, 6>("redundant_loop", 3.0, asked);
-    problem::<Twin, 4, 4>("redundant_row", 3.0, asked);
+/// Begin of the written page.
+const HEAD: &str = "# Formulations against each other
+
+`cargo bench -p mbs-tests --bench formulations -- --docs` writes this file. Whole motions by the default, Dormand and Prince's order 8 with
+`Projection`, and by others, as time at equal error. The error is the largest of coordinates, and of rates over ten spans, at four instants,
+against the velocity transformation at a tolerance of 1e-13; of redundant rows against the projection. Ratios are the default's time over
+the other's: below 1 the default is faster. A dash: the error is not reached. `redundant_loop` and `redundant_row` are texts of the bench.
+
+| motion | error | default, ms | over velocity transformation | over Baumgarte | over velocity transformation, order 5 |
+|---|---|---|---|---|---|
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if !arguments.iter().any(|argument| argument == "--bench") {
+        println!("nothing is measured without `cargo bench`");
+        return ExitCode::SUCCESS;
+    }
+    // `--rounds 5`, which other benches take, is no name.
+    let is_name = |argument: &&String| !argument.starts_with('-') && argument.parse::<u32>().is_err();
+    let asked = arguments.iter().find(is_name).map(String::as_str);
+    let mut table = HEAD.to_owned();
+    print!("{table}");
+    let rows = &mut table;
+    problem::<mechanisms::pendulum::Pendulum, 2, 1>(rows, "pendulum", 10.0, asked);
+    problem::<mechanisms::slider_crank_mass::CrankPistonReleased, 3, 2>(rows, "slider_crank", 0.6, asked);
+    problem::<mechanisms::andrews::Andrews, 7, 6>(rows, "andrews", 0.03, asked);
+    problem::<mechanisms::n_four_bar::NFourBar, 6, 5>(rows, "a02_2", 10.0, asked);
+    problem::<mechanisms::n_four_bar_10::NFourBar10, 22, 21>(rows, "a02_10", 10.0, asked);
+    problem::<mechanisms::bricard::Bricard, 23, 23>(rows, "bricard", 1.0, asked);
+    problem::<mechanisms::heavy_top::HeavyTop, 7, 4>(rows, "heavy_top", 0.5, asked);
+    problem::<mechanisms::car_axis::CarAxis, 4, 2>(rows, "car_axis", 3.0, asked);
+    problem::<mechanisms::governor::Governor, 16, 12>(rows, "governor", 0.1, asked);
+    problem::<Plate, 6, 6>(rows, "redundant_loop", 3.0, asked);
+    problem::<Twin, 4, 4>(rows, "redundant_row", 3.0, asked);
+    if arguments.iter().any(|argument| argument == "--docs") {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/formulations.md");
+        if let Err(error) = fs::write(&file, &table) {
+            eprintln!("cannot write {}: {error}", file.display());
+            return ExitCode::FAILURE;
+        }
+    }
+    ExitCode::SUCCESS
 }

@@ -42,9 +42,29 @@ constraint rows {
         + (x + 2)^y + cos(x - y)/(2 + sin(crank + x)));
 }";
 
+/// Functions of an array in loops: in order, backwards, and by numbers without a fixed step.
+const LAWS: &str = "
+pub mechanism Laws;
+function law: [1; 12](1), C4;
+coord crank: 1 = 0.5;
+coord x: [1; 12] = [0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1];
+coord y: [1; 5];
+drive motor: crank == law[4](t/1s);
+constraint chain {
+    x[0] + 0.1*law[0](x[0]) == law[1](crank);
+    for i in 1..12 { x[i] == law[i](x[i - 1]) + 0.1*law[11 - i](crank); }
+    y[0] == law[7].d1(x[3]);
+    y[1] == law[2].d1(x[11]);
+    y[2] == law[9].d1(x[5]);
+    y[3] == law[3].d1(x[0]);
+    y[4] == law[10].d1(x[7]);
+}
+out total: 1 = sum(i in 0..12: law[i].d2(2*x[11 - i]));";
+
 /// The text's module, the name of its type, the text, and its motion.
-fn texts() -> [(&'static str, &'static str, &'static str, &'static str); 6] {
+fn texts() -> [(&'static str, &'static str, &'static str, &'static str); 7] {
     [
+        ("laws", "Laws<Law>", LAWS, "turn"),
         ("odd", "Odd", ODD, "turn"),
         ("peaucellier", "Peaucellier", Peaucellier::<f64>::SOURCE, "turn"),
         ("three_rrr", "ThreeRrr", ThreeRrr::<f64>::SOURCE, "turn"),
@@ -63,6 +83,9 @@ fn mechanisms_cut_as_long_ones_move_as_in_one_piece() {
         let cut = mbs_codegen::expand_source_as_long(source).expect("a text without faults").to_string();
         // The control: the code is another one, in loops and parts.
         assert!(cut.contains("Passed") && !whole.contains("Passed"), "{name}");
+        if module == "laws" {
+            assert!((1..30).contains(&cut.matches("chunks :: jet").count()), "a call each, not in loops");
+        }
         // Every operation is on a tape, where its results have the same bits in numbers of any kind.
         if module == "odd" {
             assert!(cut.contains("tape :: run"));

@@ -7,7 +7,8 @@ use crate::{browser, costs, documents, fuzz, growth, instructions, lines, plante
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 7] = [
+const LONG: [(&str, &str); 8] = [
+    ("mbs-codegen", ""),
     ("mbs-motions", ""),
     ("mbs-cases", "friction"),
     ("mbs-cases", "impacts"),
@@ -35,7 +36,7 @@ pub fn ci() -> Result<(), String> {
             "--workspace",
             "--all-targets",
             "--features",
-            "mbs-cases/long,mbs-faults/long,mbs-motions/long,mbs-tests/long,mechanisms/long",
+            "mbs-cases/long,mbs-codegen/long,mbs-faults/long,mbs-motions/long,mbs-tests/long,mechanisms/long",
             "--",
             "-D",
             "warnings",
@@ -114,10 +115,11 @@ fn oldest() -> Result<(), String> {
 }
 
 /// Benches against peers, with their packages.
-const BENCHES: [(&str, &str); 4] = [
+const BENCHES: [(&str, &str); 5] = [
     ("mbs-tests", "kinematics"),
     ("mbs-tests", "dynamics"),
     ("mbs-tests", "linkages"),
+    ("mbs-tests", "formulations"),
     ("mbs-motions", "valvetrain"),
 ];
 

@@ -31,7 +31,8 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
     let mut worst: BTreeMap<(usize, usize, usize), Demand> = BTreeMap::new();
     for demand in demands(model, equations) {
         let start = demand.span.start();
-        let place = (demand.function, start.line, start.column);
+        // Rounds of a loop call functions of one array in one place.
+        let place = (model.first_of_declaration(demand.function), start.line, start.column);
         if worst.get(&place).is_none_or(|known| known.order < demand.order) {
             worst.insert(place, demand);
         }
@@ -39,7 +40,7 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
     for Demand { function, order, by, span, argument: place } in worst.into_values() {
         let Some(function) = model.functions.get(function).filter(|f| f.continuity < order) else { continue };
         let (name, declared) = (&function.name.text, function.continuity);
-        let (unit, argument) = (&function.unit, &function.argument_unit);
+        let (unit, argument) = (function.declared_unit(), &function.argument_unit);
         let closed = if function.period == Some(TAU) { ", periodic TAU" } else { "" };
         let mut help = format!(
             "supply a smoother function and declare it, `function {name}: {unit}({argument}), C{order}{closed};`"
@@ -65,6 +66,18 @@ pub fn highest(model: &Model, equations: &Equations) -> Vec<Demand> {
     for demand in demands(model, equations) {
         if highest.get(&demand.function).is_none_or(|known| known.order < demand.order) {
             highest.insert(demand.function, demand);
+        }
+    }
+    highest.into_values().collect()
+}
+
+/// Before: demands as [`highest`] has them. After: the highest of each declaration, for functions of one array are of one type.
+pub fn of_declarations(model: &Model, demands: Vec<Demand>) -> Vec<Demand> {
+    let mut highest: BTreeMap<usize, Demand> = BTreeMap::new();
+    for demand in demands {
+        let first = model.first_of_declaration(demand.function);
+        if highest.get(&first).is_none_or(|known| known.order < demand.order) {
+            highest.insert(first, demand);
         }
     }
     highest.into_values().collect()

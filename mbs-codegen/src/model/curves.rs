@@ -10,7 +10,7 @@ use proc_macro2::Span;
 
 use super::declarations::Declarations;
 use super::elaborator::Elaborator;
-use super::names::{Curve, Symbol};
+use super::names::{Callable, Curve, Symbol};
 use super::resolver::Resolver;
 use super::unit_inference::Bare;
 use super::units::Dimension;
@@ -41,14 +41,15 @@ impl Declarations<'_> {
         &mut self,
         centre: &Expression,
         radius: &Expression,
+        number: Option<&Expression>,
     ) -> Result<(Curve, Reach), Fault> {
         let Some((Instruction { operation: Operation::Call { function, .. }, span }, turned)) =
             radius.code.split_last()
         else {
             return Err(Fault);
         };
-        let callable = match self.names.get(function) {
-            Some(Symbol::Function(callable)) => *callable,
+        let (callable, function) = &match self.names.get(function) {
+            Some(Symbol::Function(callable)) => self.radius_of((*callable, function), number, *span)?,
             Some(Symbol::Faulty) => return Err(Fault),
             _ => {
                 let message = format!("`{function}` is no declared function");
@@ -67,7 +68,13 @@ impl Declarations<'_> {
         if !closes || !of_angle {
             let message =
                 format!("`{function}` is no polar radius: a length over an angle, closed after a turn");
-            let help = format!("declare it as `function {function}: m(rad), C3, periodic TAU;`");
+            let declared = self.model.functions.get(callable.index);
+            let name = declared.map_or(function.as_str(), |declared| &declared.name.text);
+            let unit = match declared.and_then(|declared| declared.array) {
+                Some(array) => format!("[m; {}]", array.length),
+                None => "m".into(),
+            };
+            let help = format!("declare it as `function {name}: {unit}(rad), C3, periodic TAU;`");
             self.diagnostics.report(*span, message, help);
             return Err(Fault);
         }
@@ -80,7 +87,24 @@ impl Declarations<'_> {
             let angle = work.scalar(&turned, "`turned`", turned.span)?;
             work.number(angle, "the angle of a curve", turned.span)?;
             let function = function.clone();
-            Ok((Curve { radius: callable, function, centre, turned }, work.needs))
+            Ok((Curve { radius: *callable, function, centre, turned }, work.needs))
+        })
+    }
+
+    /// The function of a curve, and its name; one of an array by its number.
+    fn radius_of(
+        &mut self,
+        (function, name): (Callable, &str),
+        number: Option<&Expression>,
+        span: Span,
+    ) -> Result<(Callable, String), Fault> {
+        self.elaborate(|work| match (number, function.length) {
+            (Some(number), _) => {
+                let number = work.value(number)?;
+                functions::element(work, function, name, &number, span)
+            }
+            (None, Some(length)) => Err(functions::bare_array(work, (name, 0), length, span)),
+            (None, None) => Ok((function, name.to_owned())),
         })
     }
 }

@@ -2,25 +2,30 @@
 
 use std::collections::BTreeSet;
 
-use super::Function;
+use super::counts::LONGEST;
 use super::declarations::Declarations;
 use super::initialiser::{initialiser, numbers};
 use super::names::Callable;
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Value};
+use super::{Function, InArray};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Item, Name, Operation, Signature, Statement, StatementKind};
 
 impl Declarations<'_> {
-    /// Declares a function; its period is a number.
+    /// Declares a function, or an array of them; the period is a number.
     pub(super) fn function(&mut self, name: &Name, docs: Vec<String>, signature: &Signature) {
-        let Signature { unit, argument, continuity, period } = signature;
-        let (dimension, taken) =
-            (Dimension::of(unit, self.diagnostics), Dimension::of(argument, self.diagnostics));
+        let Signature { value, argument, continuity, period } = signature;
+        let unit = &value.unit;
+        let declared = self.declared(value);
+        let taken = Dimension::of(argument, self.diagnostics);
         if !self.owns(name) {
             return;
         }
+        let length = declared.shape.first().copied();
+        let dimension =
+            (!declared.faulty && self.is_declarable(name, &declared.shape)).then_some(declared.dimension);
         let period = period.as_ref().and_then(|expression| {
             let period = self.elaborate(|work| {
                 let value = work.value(expression)?;
@@ -46,18 +51,42 @@ impl Declarations<'_> {
         });
         if let (Some(value), Some(argument)) = (dimension, taken) {
             let index = self.model.functions.len();
-            self.names
-                .define_function(&name.text, Callable { index, unit: value, argument, bare: Bare::of(unit) });
+            let callable = Callable { index, length, unit: value, argument, bare: Bare::of(unit) };
+            self.names.define_function(&name.text, callable);
         }
-        self.model.functions.push(Function {
+        let function = |array| Function {
             name: name.clone(),
-            docs,
+            docs: docs.clone(),
             unit: unit.text.clone(),
             argument_unit: argument.text.clone(),
             dimensions: [dimension, taken],
             continuity: *continuity,
             period,
-        });
+            array,
+        };
+        match length.filter(|_| dimension.is_some()) {
+            Some(length) => {
+                let places = (0..length).map(|index| Some(InArray { index, length }));
+                self.model.functions.extend(places.map(function));
+            }
+            None => self.model.functions.push(function(None)),
+        }
+    }
+
+    /// `true` if a function may have these lengths; otherwise they are reported.
+    fn is_declarable(&mut self, name: &Name, shape: &[usize]) -> bool {
+        let message = match shape {
+            [] => return true,
+            [length] if self.model.functions.len() + length <= LONGEST => return true,
+            [_] => format!("the text declares more than {LONGEST} functions"),
+            _ => format!("the array of functions `{}` has several lengths", name.text),
+        };
+        let help = match shape {
+            [_] => "declare shorter arrays",
+            _ => "write one length, `[m; 6]`, and compute the number of each: `lift[3*i + k](x)`",
+        };
+        self.diagnostics.report(name.span, message, help);
+        false
     }
 
     /// Replaces a declaration that could not be read, so that its calls are not reported too.
@@ -70,6 +99,7 @@ impl Declarations<'_> {
             dimensions: [None; 2],
             continuity: 0,
             period: None,
+            array: None,
         });
     }
 }
@@ -89,10 +119,11 @@ pub fn check_called(statements: &[Statement], diagnostics: &mut Diagnostics) {
         })
         .collect();
     for statement in statements {
-        if let StatementKind::Function { name, .. } = &statement.kind
+        if let StatementKind::Function { name, signature } = &statement.kind
             && !called.contains(name.text.as_str())
         {
-            let help = format!("call it, `{}(x)`, or remove the declaration", name.text);
+            let number = if signature.value.shape.is_empty() { "" } else { "[0]" };
+            let help = format!("call it, `{}{number}(x)`, or remove the declaration", name.text);
             diagnostics.report(name.span, format!("function `{}` is never called", name.text), help);
         }
     }

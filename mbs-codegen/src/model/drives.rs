@@ -157,7 +157,9 @@ fn differentiated(equation: &Equation) -> Option<(&str, &[Instruction], Span)> {
 fn differentiates(expression: &Expression) -> Option<(&str, &[Instruction], Span)> {
     let (Instruction { operation, span }, argument) = expression.code.split_last()?;
     match operation {
-        Operation::Call { function, order: 0, arguments: 1 } if function.starts_with("der") => {
+        Operation::Call { function, order: 0, arguments: 1, indexed: false }
+            if function.starts_with("der") =>
+        {
             Some((function, argument, *span))
         }
         _ => None,
@@ -168,7 +170,7 @@ fn differentiates(expression: &Expression) -> Option<(&str, &[Instruction], Span
 fn rated(expression: &Expression) -> Option<Expression> {
     let (Instruction { operation, .. }, argument) = expression.code.split_last()?;
     match operation {
-        Operation::Call { function, order: 0, arguments: 1 } if function == "rate" => {
+        Operation::Call { function, order: 0, arguments: 1, indexed: false } if function == "rate" => {
             Some(Expression { code: argument.to_vec() })
         }
         _ => None,

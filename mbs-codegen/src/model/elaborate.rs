@@ -7,7 +7,7 @@ use super::counts::follows_literals;
 use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::functions;
-use super::names::{CONSTANTS, PARTIAL, Symbol, is_function, is_of_two};
+use super::names::{CONSTANTS, Callable, PARTIAL, RESERVED, Symbol, is_function, is_of_two};
 use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
 use super::unit_inference::Bare;
@@ -102,13 +102,17 @@ impl Elaborator<'_> {
                 }
                 self.operator(*operator, &a, &b, span)?
             }
-            Operation::Call { function, order: 0, arguments } if REFERRING.contains(&function.as_str()) => {
+            Operation::Call { function, order: 0, arguments, indexed: false }
+                if REFERRING.contains(&function.as_str()) =>
+            {
                 let group = index.checked_sub(1).and_then(|before| expression.code.get(before));
                 let values = arguments.saturating_sub(1);
                 let arguments = stack.pop_many(values, self.names)?;
                 self.referring(function, group, arguments, span)?
             }
-            Operation::Call { function, order: 0, arguments } if is_of_two(function, *arguments) => {
+            Operation::Call { function, order: 0, arguments, indexed: false }
+                if is_of_two(function, *arguments) =>
+            {
                 let is_of_curve = function != PARTIAL;
                 let curve = index.checked_sub(1).and_then(|before| expression.code.get(before));
                 let is_name = matches!(curve.map(|curve| &curve.operation), Some(Operation::Name(_)));
@@ -119,7 +123,12 @@ impl Elaborator<'_> {
                     false => self.partial(arguments, span)?,
                 }
             }
-            Operation::Call { function, order, arguments } => {
+            Operation::Call { function, order, arguments, indexed: true } => {
+                let arguments = stack.pop_many(*arguments, self.names)?;
+                let number = stack.pop(self.names)?;
+                self.of_array((function, *order), &number, arguments, span)?
+            }
+            Operation::Call { function, order, arguments, indexed: false } => {
                 if *arguments == 1 && OF_ANGLES.contains(&function.as_str()) {
                     let before = index.checked_sub(1).and_then(|at| expression.code.get(at..index));
                     self.bare_angles(before.unwrap_or_default())?;
@@ -242,12 +251,43 @@ impl Elaborator<'_> {
         Ok(Value::scalar(scalar, span))
     }
 
+    /// A call of one of an array of functions.
+    fn of_array(
+        &mut self,
+        (name, order): (&str, u8),
+        number: &Value,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Value, Fault> {
+        match self.names.get(name) {
+            Some(Symbol::Function(array)) => {
+                let (function, name) = functions::element(self, *array, name, number, span)?;
+                functions::call_declared(self, function, (&name, order), arguments, span)
+            }
+            Some(Symbol::Faulty) => Err(Fault),
+            Some(Symbol::Pending) => Err(self.too_early(name, span)),
+            None if !is_function(name) && !RESERVED.contains(&name) => Err(self.unknown_function(name, span)),
+            _ => {
+                let message = format!("`{name}` is no array of functions");
+                Err(self.fault(
+                    span,
+                    message,
+                    "an array of functions is declared, `function lift: [m; 2](rad), C3;`",
+                ))
+            }
+        }
+    }
+
     /// Value of a name that is no declared value.
     fn name(&mut self, name: &str, place: (&[Instruction], usize), span: Span) -> Result<Value, Fault> {
         match self.names.get(name) {
             Some(Symbol::Count(count)) => {
                 let count = *count as f64;
                 return Ok(Value::scalar(self.number_literal(count, span), span));
+            }
+            Some(Symbol::Function(Callable { length: Some(length), .. })) => {
+                let length = *length;
+                return Err(functions::bare_array(self, (name, 0), length, span));
             }
             Some(Symbol::Function(_)) => {
                 let message = format!("`{name}` is a function");

@@ -185,6 +185,9 @@ pub fn call_declared(
     arguments: Vec<Value>,
     span: Span,
 ) -> Result<Value, Fault> {
+    if let Some(length) = function.length {
+        return Err(bare_array(work, (name, order), length, span));
+    }
     let written = if order == 0 { name.to_owned() } else { format!("{name}.d{order}") };
     let [argument] = work.arguments(&written, arguments, span)?;
     let scalar = work.scalar(&argument, &format!("`{written}`"), argument.span)?;
@@ -195,6 +198,41 @@ pub fn call_declared(
     }
     let id = work.expressions.push_call(function.index, order, scalar.id, span);
     Ok(Value::scalar(Scalar { id, quantity: Quantity::Known(unit), bare: function.bare, span }, span))
+}
+
+/// The function of this number in an array, and its name.
+pub fn element(
+    work: &mut Elaborator<'_>,
+    array: Callable,
+    name: &str,
+    number: &Value,
+    span: Span,
+) -> Result<(Callable, String), Fault> {
+    let Some(length) = array.length else {
+        return Err(work.fault(
+            span,
+            format!("`{name}` is one function, no array of functions"),
+            format!("write `{name}(…)`, or declare an array: `function {name}: [m; 2](rad), C3;`"),
+        ));
+    };
+    let index = work.count(number)?;
+    if index >= length {
+        return Err(work.fault(
+            number.span,
+            format!("`{name}[{index}]` is beyond the last of {length} functions"),
+            format!("functions are counted from 0; the last is `{name}[{}]`", length.saturating_sub(1)),
+        ));
+    }
+    let function = Callable { index: array.index + index, length: None, ..array };
+    Ok((function, format!("{name}[{index}]")))
+}
+
+/// A fault at an array of functions of which none is chosen.
+pub fn bare_array(work: &mut Elaborator<'_>, (name, order): (&str, u8), length: usize, span: Span) -> Fault {
+    let functions = if length == 1 { "1 function" } else { &format!("{length} functions") };
+    let message = format!("`{name}` is an array of {functions}");
+    let derivative = if order == 0 { String::new() } else { format!(".d{order}") };
+    work.fault(span, message, format!("write the number of one, from 0: `{name}[0]{derivative}(…)`"))
 }
 
 /// The argument has the declared unit.

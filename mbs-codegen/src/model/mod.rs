@@ -126,6 +126,12 @@ pub struct Model {
 }
 
 impl Model {
+    /// Index of the first function of the declaration that this one is of.
+    pub fn first_of_declaration(&self, function: usize) -> usize {
+        let array = self.functions.get(function).and_then(|function| function.array);
+        function.saturating_sub(array.map_or(0, |array| array.index))
+    }
+
     /// `true` if functions of the text can be bounded over parts of a motion. So it is where the text calls no function of the
     /// caller and no drive prescribes a rate.
     pub fn can_be_enclosed(&self) -> bool {
@@ -211,6 +217,48 @@ pub struct Function {
     pub continuity: u8,
     /// Period, in the unit of the argument.
     pub period: Option<f64>,
+    /// Its place, where the text declares an array of functions.
+    pub array: Option<InArray>,
+}
+
+/// Place in an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InArray {
+    /// Number, from 0.
+    pub index: usize,
+    /// Length of the array.
+    pub length: usize,
+}
+
+impl Function {
+    /// As the text calls it: `lift`, or `lift[0]` of an array.
+    pub fn label(&self) -> String {
+        match self.array {
+            Some(InArray { index, .. }) => format!("{}[{index}]", self.name.text),
+            None => self.name.text.clone(),
+        }
+    }
+
+    /// As components are called: `lift`, or `lift.0` of an array.
+    pub fn component(&self) -> String {
+        match self.array {
+            Some(InArray { index, .. }) => format!("{}.{index}", self.name.text),
+            None => self.name.text.clone(),
+        }
+    }
+
+    /// Lengths of its field, as those of other fields: none for a function by itself.
+    pub fn shape(&self) -> Vec<usize> {
+        self.array.iter().map(|array| array.length).collect()
+    }
+
+    /// Unit of the value in a declaration: `m`, or `[m; 2]` of an array.
+    pub fn declared_unit(&self) -> String {
+        match self.array {
+            Some(InArray { length, .. }) => format!("[{}; {length}]", self.unit),
+            None => self.unit.clone(),
+        }
+    }
 }
 
 /// A scalar coordinate.

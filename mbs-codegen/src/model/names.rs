@@ -73,8 +73,10 @@ pub(super) const CONSTANTS: [&str; 3] = ["t", "PI", "TAU"];
 /// A declared function as expressions see it.
 #[derive(Clone, Copy, Debug)]
 pub struct Callable {
-    /// Index among the functions of the text.
+    /// Index among the functions of the text, of the first one of an array.
     pub(super) index: usize,
+    /// Number of functions, where it is an array.
+    pub(super) length: Option<usize>,
     /// Unit of the value.
     pub(super) unit: Dimension,
     /// Unit of the argument.

@@ -18,7 +18,7 @@ pub const REFERRING: [&str; 2] = ["margin", "ratio"];
 pub fn is_reference(code: &[Instruction], index: usize) -> bool {
     matches!(
         code.get(index + 1).map(|next| &next.operation),
-        Some(Operation::Call { function, arguments, .. })
+        Some(Operation::Call { function, arguments, indexed: false, .. })
             if REFERRING.contains(&function.as_str()) || *arguments == 2 && OF_CURVES.contains(&function.as_str())
     )
 }

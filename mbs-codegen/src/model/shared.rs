@@ -52,7 +52,7 @@ pub fn merge(
     shared
 }
 
-/// The functions of all scenes; none has the name of a field.
+/// The functions of all scenes, of an array the first one; none has the name of a field.
 fn functions(
     statements: &[Statement],
     scenes: &[Scene],
@@ -71,8 +71,10 @@ fn functions(
             report((&field.name, &first.name, "field"), scene.label().unwrap_or_default(), diagnostics);
             continue;
         }
-        for (scene, other) in found.filter(|(_, other)| !is_same_function(first, other)) {
-            report((&first.name, &other.name, "function"), scene.label().unwrap_or_default(), diagnostics);
+        let is_first = |other: &Function| other.array.is_none_or(|array| array.index == 0);
+        for (scene, other) in found.filter(|(_, other)| is_first(other) && !is_same_function(first, other)) {
+            let what = if first.shape() == other.shape() { "function" } else { "array of functions" };
+            report((&first.name, &other.name, what), scene.label().unwrap_or_default(), diagnostics);
         }
         shared.push(first.clone());
     }
@@ -80,7 +82,7 @@ fn functions(
 }
 
 fn is_same_function(a: &Function, b: &Function) -> bool {
-    let terms = |f: &Function| (f.dimensions, f.continuity, f.period.map(f64::to_bits));
+    let terms = |f: &Function| (f.dimensions, f.continuity, f.period.map(f64::to_bits), f.shape());
     terms(a) == terms(b)
 }
 
@@ -119,12 +121,16 @@ fn is_same(a: &Field, of_a: &[Variable], b: &Field, of_b: &[Variable]) -> bool {
 }
 
 fn report((first, other, what): (&Name, &Name, &str), scene: &str, diagnostics: &mut Diagnostics) {
-    let terms = if what == "field" { "unit, shape and default" } else { "units, continuity and period" };
+    let (shared, terms) = match what {
+        "field" => ("fields", "unit, shape and default"),
+        "function" => ("functions", "units, continuity and period"),
+        _ => ("functions", "length, units, continuity and period"),
+    };
     diagnostics.report(
         other.span,
         format!("`{}` is another {what} in scene `{scene}` than before", other.text),
         format!(
-            "all scenes share their {what}s: declare it as in line {}, same {terms}, or rename it",
+            "all scenes share their {shared}: declare it as in line {}, same {terms}, or rename it",
             first.span.start().line
         ),
     );

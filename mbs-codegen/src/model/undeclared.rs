@@ -179,10 +179,10 @@ fn declared_otherwise(statements: &[Statement], name: &str) -> Option<String> {
 /// Cure at a function that is declared nowhere.
 fn function(statements: &[Statement], names: &Names, name: &str, others: usize) -> Option<String> {
     let mut expressions = statements.iter().flat_map(|statement| statement.kind.expressions());
-    let arguments = expressions.find_map(|Expression { code }| {
+    let (arguments, indexed) = expressions.find_map(|Expression { code }| {
         code.iter().enumerate().find_map(|(index, instruction)| match &instruction.operation {
-            Operation::Call { function, arguments, .. } if function == name => {
-                operands(code, index, *arguments)
+            Operation::Call { function, arguments, indexed, .. } if function == name => {
+                Some((operands(code, index, *arguments)?, *indexed))
             }
             _ => None,
         })
@@ -203,12 +203,25 @@ fn function(statements: &[Statement], names: &Names, name: &str, others: usize) 
     if times < 2 && nearest(name, known).is_some() || arguments.len() != 1 {
         return None;
     }
-    let signature = signature(statements, name, others).unwrap_or_else(|| "m(rad)".into());
-    Some(format!("declare it: `function {name}: {signature}, C2;`"))
+    let (unit, argument) =
+        signature(statements, name, (indexed, others)).unwrap_or_else(|| ("m".into(), "rad".into()));
+    Some(match indexed {
+        true => format!(
+            "declare it with the number of functions, here 2: `function {name}: [{unit}; 2]({argument}), C2;`"
+        ),
+        false => format!("declare it: `function {name}: {unit}({argument}), C2;`"),
+    })
 }
 
-/// The units of value and argument with which a function leaves no fault but the `others`: `rad(s)`.
-fn signature(statements: &[Statement], name: &str, others: usize) -> Option<String> {
+/// Functions of an array that is tried.
+const IN_TRIALS: f64 = 64.0;
+
+/// The units of value and argument with which a function, or an array of them, leaves no fault but the `others`: `rad`, `s`.
+fn signature(
+    statements: &[Statement],
+    name: &str,
+    (indexed, others): (bool, usize),
+) -> Option<(String, String)> {
     if statements.len() > MOST_STATEMENTS {
         return None;
     }
@@ -216,8 +229,11 @@ fn signature(statements: &[Statement], name: &str, others: usize) -> Option<Stri
     let pairs = OF_ARGUMENTS.iter().flat_map(|argument| UNITS.iter().map(move |unit| (*unit, *argument)));
     pairs.into_iter().find_map(|(unit, argument)| {
         let span = Span::call_site();
+        let length = Operation::Number { value: IN_TRIALS, unit: None, integer: true };
+        let length = Expression { code: vec![Instruction { operation: length, span }] };
+        let shape = if indexed { vec![length] } else { Vec::new() };
         let signature = Signature {
-            unit: parsed(unit, span)?,
+            value: Type { unit: parsed(unit, span)?, shape },
             argument: parsed(argument, span)?,
             continuity: 9,
             period: None,
@@ -225,7 +241,7 @@ fn signature(statements: &[Statement], name: &str, others: usize) -> Option<Stri
         let kind = StatementKind::Function { name: Name { text: name.to_owned(), span }, signature };
         let fits = leaves_no_fault(statements, kind, others);
         let unit = of_side.as_deref().filter(|_| unit == "1").unwrap_or(unit);
-        fits.then(|| format!("{unit}({argument})"))
+        fits.then(|| (unit.to_owned(), argument.to_owned()))
     })
 }
 

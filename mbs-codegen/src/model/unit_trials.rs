@@ -151,7 +151,12 @@ fn declared(kind: &StatementKind) -> Option<(&'static str, &Name, &Unit, Option<
         StatementKind::State { name, kind, .. } => ("state", name, &kind.unit, Some(kind)),
         StatementKind::Latch { name, kind, .. } => ("latch", name, &kind.unit, Some(kind)),
         StatementKind::Out { name, kind, .. } => ("out", name, &kind.unit, Some(kind)),
-        StatementKind::Function { name, signature } => ("function", name, &signature.unit, None),
+        StatementKind::Function { name, signature } => (
+            "function",
+            name,
+            &signature.value.unit,
+            Some(&signature.value).filter(|kind| !kind.shape.is_empty()),
+        ),
         _ => return None,
     })
 }
@@ -165,7 +170,7 @@ fn set_unit(kind: &mut StatementKind, new: Unit) {
         | StatementKind::State { kind, .. }
         | StatementKind::Latch { kind, .. }
         | StatementKind::Out { kind, .. } => kind.unit = new,
-        StatementKind::Function { signature, .. } => signature.unit = new,
+        StatementKind::Function { signature, .. } => signature.value.unit = new,
         _ => {}
     }
 }

@@ -14,7 +14,7 @@ pub fn start(code: &[Instruction], end: usize) -> Option<usize> {
             Operation::Number { .. } | Operation::Name(_) => 0,
             Operation::Negate => 1,
             Operation::Binary(_) => 2,
-            Operation::Call { arguments, .. } => *arguments,
+            Operation::Call { arguments, indexed, .. } => arguments + usize::from(*indexed),
             Operation::Array { length } => *length,
             Operation::Index { indices } => indices + 1,
             Operation::Reference { targets, .. } => targets.iter().filter(|target| target.indexed).count(),
@@ -87,11 +87,11 @@ fn step(operation: &Operation, stack: &mut Vec<(String, u8)>) -> Option<(String,
             let of_left = if *operator == Operator::Power { 5 } else { strength };
             (format!("{}{sign}{}", bracketed(left, of_left), bracketed(right, of_right)), strength)
         }
-        Operation::Call { function, order: 0, arguments } => {
-            (format!("{function}({})", list(*arguments)?), ATOM)
-        }
-        Operation::Call { function, order, arguments } => {
-            (format!("{function}.d{order}({})", list(*arguments)?), ATOM)
+        Operation::Call { function, order, arguments, indexed } => {
+            let arguments = list(*arguments)?;
+            let number = if *indexed { format!("[{}]", list(1)?) } else { String::new() };
+            let derivative = if *order == 0 { String::new() } else { format!(".d{order}") };
+            (format!("{function}{number}{derivative}({arguments})"), ATOM)
         }
         Operation::Array { length } => (format!("[{}]", list(*length)?), ATOM),
         Operation::Index { indices } => {

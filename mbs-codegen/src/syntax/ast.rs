@@ -33,8 +33,9 @@ pub enum Operation {
     Negate,
     /// Joins two values.
     Binary(Operator),
-    /// Applies a function, or its derivative of this order, to `arguments` values.
-    Call { function: String, order: u8, arguments: usize },
+    /// Applies a function, or its derivative of this order, to `arguments` values; `indexed`: it is one of an array, whose number is
+    /// popped from below the arguments.
+    Call { function: String, order: u8, arguments: usize, indexed: bool },
     /// Makes an array of `length` values.
     Array { length: usize },
     /// Pops `indices` counts and indexes the array below them.
@@ -106,11 +107,11 @@ pub struct Type {
     pub shape: Vec<Expression>,
 }
 
-/// Units, continuity and period of a declared function.
+/// Units, continuity and period of a declared function, or of an array of them.
 #[derive(Clone, Debug)]
 pub struct Signature {
-    /// Unit of the value.
-    pub unit: Unit,
+    /// Unit of the value, and the number of functions in an array.
+    pub value: Type,
     /// Unit of the argument.
     pub argument: Unit,
     /// Number of continuous derivatives.
@@ -198,6 +199,8 @@ pub enum StatementKind {
         centre: Expression,
         /// R at the angle by which the curve is turned: the angle, then the call.
         radius: Expression,
+        /// Number of R in an array of functions.
+        number: Option<Expression>,
     },
     Constraint {
         name: Name,
@@ -422,8 +425,12 @@ impl StatementKind {
             }
             StatementKind::Coord { kind, guess: value, .. } => kind.shape.iter().chain(value).collect(),
             StatementKind::Input { kind, .. } => kind.shape.iter().collect(),
-            StatementKind::Function { signature, .. } => signature.period.iter().collect(),
-            StatementKind::Curve { centre, radius, .. } => vec![centre, radius],
+            StatementKind::Function { signature, .. } => {
+                signature.value.shape.iter().chain(&signature.period).collect()
+            }
+            StatementKind::Curve { centre, radius, number, .. } => {
+                [centre, radius].into_iter().chain(number).collect()
+            }
             StatementKind::Constraint { within, items, .. } => {
                 within.iter().chain(items.iter().flat_map(Item::expressions)).collect()
             }

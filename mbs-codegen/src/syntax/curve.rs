@@ -12,7 +12,7 @@ pub const ON: &str = "write `A on cam;`, a point and the name of a curve";
 
 /// Reads a curve after the word `curve`.
 pub fn read_curve(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let (name, (centre, radius)) = parser.declare(Declares::Value, CURVE, |parser, _| {
+    let (name, (centre, radius, number)) = parser.declare(Declares::Value, CURVE, |parser, _| {
         parser.expect('=', CURVE)?;
         if !parser.take_word("polar") {
             let _reported: Read<()> = parser.expected("`polar`", CURVE);
@@ -22,6 +22,10 @@ pub fn read_curve(parser: &mut Parser<'_>) -> Read<StatementKind> {
             }
         }
         let function = parser.name(CURVE)?;
+        let number = if parser.take('[') { Some(expression(parser)?) } else { None };
+        if number.is_some() {
+            parser.expect(']', CURVE)?;
+        }
         if !parser.take_word("about") {
             return parser.expected("`about`", CURVE);
         }
@@ -34,9 +38,10 @@ pub fn read_curve(parser: &mut Parser<'_>) -> Read<StatementKind> {
             }
         };
         end(parser, CURVE)?;
-        let call = Operation::Call { function: function.text, order: 0, arguments: 1 };
+        let indexed = number.is_some();
+        let call = Operation::Call { function: function.text, order: 0, arguments: 1, indexed };
         code.push(Instruction { operation: call, span: function.span });
-        Ok((centre, Expression { code }))
+        Ok((centre, Expression { code }, number))
     })?;
-    Ok(StatementKind::Curve { name, centre, radius })
+    Ok(StatementKind::Curve { name, centre, radius, number })
 }

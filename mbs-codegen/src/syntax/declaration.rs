@@ -106,10 +106,13 @@ pub fn read_input(parser: &mut Parser<'_>) -> Read<StatementKind> {
 }
 
 const FUNCTION: &str = "write `function lift: m(rad), C3;` or `function lift: m(rad), C3, periodic TAU;`";
+const FUNCTIONS: &str =
+    "an array of functions has its length beside the unit: write `function lift: [m; 2](rad), C3;`";
 pub fn read_function(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let (name, signature) = parser.declare(Declares::Function, FUNCTION, |parser, _| {
-        parser.expect(':', FUNCTION)?;
-        let value = unit(parser)?;
+        let has_length = *parser.peek() == TokenKind::Open('[');
+        parser.expect(':', if has_length { FUNCTIONS } else { FUNCTION })?;
+        let value = declared_type(parser, FUNCTIONS)?;
         parser.expect('(', FUNCTION)?;
         let argument = unit(parser)?;
         parser.expect(')', FUNCTION)?;
@@ -121,7 +124,7 @@ pub fn read_function(parser: &mut Parser<'_>) -> Read<StatementKind> {
         }
         let period = if periodic { Some(expression(parser)?) } else { None };
         end(parser, FUNCTION)?;
-        Ok(Signature { unit: value, argument, continuity, period })
+        Ok(Signature { value, argument, continuity, period })
     })?;
     Ok(StatementKind::Function { name, signature })
 }

@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Instruction, Operation};
-use super::expression::Reader;
+use super::expression::{Called, Reader};
 use super::foreign::{self, CALLED};
 use super::number::literal;
 use super::number_notations;
@@ -21,7 +21,7 @@ impl Reader {
         if let TokenKind::Identifier(word) = parser.peek()
             && *parser.peek_at(1) == TokenKind::Open('(')
         {
-            return self.derivative(parser, word);
+            return self.suffix(parser, word);
         }
         if let Some(Instruction { operation: Operation::Number { unit: None, .. }, .. }) = self.code.last()
             && let Some(number) = number_notations::dot_without_digits(parser)
@@ -65,24 +65,38 @@ impl Reader {
         parser.expected("the number of a component", "write `p.0` or `p[0]`; of a matrix `m[0, 1]`")
     }
 
-    /// Reads `d1(…)` after a function's name and its dot.
-    fn derivative(&mut self, parser: &mut Parser<'_>, word: &str) -> Read<Option<bool>> {
-        let order = match word {
-            "d1" => 1,
-            "d2" => 2,
-            _ if CALLED.contains(&word) => return self.method(parser, word).map(Some),
-            _ => {
-                let message = format!("`{word}` is no derivative that a text can use");
-                parser.diagnostics.report(parser.span(), message, DERIVATIVE);
-                return Err(GivenUp);
+    /// Reads `d1(…)` after a function's name and its dot, or the method of an operand.
+    fn suffix(&mut self, parser: &mut Parser<'_>, word: &str) -> Read<Option<bool>> {
+        let is_derivative = order(word).is_some();
+        if !is_derivative && CALLED.contains(&word) {
+            return self.method(parser, word).map(Some);
+        }
+        match self.code.pop() {
+            Some(Instruction { operation: Operation::Name(function), span }) => {
+                self.derivative(parser, Called::by_name(&function), span)
             }
+            _ if is_derivative => {
+                parser.diagnostics.report(parser.span(), "only a function has a derivative", DERIVATIVE);
+                Err(GivenUp)
+            }
+            _ => no_derivative(parser),
+        }
+    }
+
+    /// Reads `d1(…)` after a function and its dot.
+    pub(super) fn derivative(
+        &mut self,
+        parser: &mut Parser<'_>,
+        called: Called,
+        span: Span,
+    ) -> Read<Option<bool>> {
+        let order = match parser.peek() {
+            TokenKind::Identifier(word) => order(word),
+            _ => None,
         };
-        let Some(Instruction { operation: Operation::Name(function), span }) = self.code.pop() else {
-            parser.diagnostics.report(parser.span(), "only a function has a derivative", DERIVATIVE);
-            return Err(GivenUp);
-        };
+        let Some(order) = order else { return no_derivative(parser) };
         parser.skip(2);
-        Ok(Some(self.call(parser, function, order, span)))
+        Ok(Some(self.call(parser, called, order, span)))
     }
 
     /// Reads the call of `math.sin(…)` or `phi.sin()`, which is reported, as `sin(…)`.
@@ -99,11 +113,32 @@ impl Reader {
         parser.skip(2);
         if parser.take(')') {
             self.push(Operation::Name(owner), span);
-            self.push(Operation::Call { function: word.into(), order: 0, arguments: 1 }, span);
+            let call = Operation::Call { function: word.into(), order: 0, arguments: 1, indexed: false };
+            self.push(call, span);
             return Ok(false);
         }
-        Ok(self.call(parser, word.into(), 0, span))
+        Ok(self.call(parser, Called::by_name(word), 0, span))
     }
+}
+
+/// Order of a derivative by its word.
+fn order(word: &str) -> Option<u8> {
+    match word {
+        "d1" => Some(1),
+        "d2" => Some(2),
+        _ => None,
+    }
+}
+
+/// Reports a word that is no derivative.
+fn no_derivative<T>(parser: &mut Parser<'_>) -> Read<T> {
+    let word = match parser.peek() {
+        TokenKind::Identifier(word) => word.as_str(),
+        _ => "",
+    };
+    let message = format!("`{word}` is no derivative that a text can use");
+    parser.diagnostics.report(parser.span(), message, DERIVATIVE);
+    Err(GivenUp)
 }
 
 /// The number that `digits` alone are.

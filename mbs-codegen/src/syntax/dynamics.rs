@@ -186,9 +186,10 @@ pub fn read_rate(parser: &mut Parser<'_>) -> Read<StatementKind> {
     })?;
     let mut state = equation.left;
     match state.code.pop() {
-        Some(Instruction { operation: Operation::Call { function, order: 0, arguments: 1 }, .. })
-            if function == "der" && !state.code.is_empty() =>
-        {
+        Some(Instruction {
+            operation: Operation::Call { function, order: 0, arguments: 1, indexed: false },
+            ..
+        }) if function == "der" && !state.code.is_empty() => {
             Ok(StatementKind::Rate { state, rate: equation.right, span: equation.span })
         }
         last => {

@@ -16,12 +16,50 @@ enum Pending {
     Negate(Span),
     Binary(Operator, Span),
     Parenthesis,
-    Call { function: String, order: u8, arguments: usize, span: Span },
-    Array { length: usize, span: Span },
-    Index { indices: usize, span: Span },
-    SumLow { variable: Name, span: Span },
-    SumHigh { variable: Name, span: Span },
-    SumBody { begin: usize, span: Span },
+    Call {
+        called: Called,
+        order: u8,
+        arguments: usize,
+        span: Span,
+    },
+    /// The number of a function in an array.
+    Element {
+        function: String,
+        span: Span,
+    },
+    Array {
+        length: usize,
+        span: Span,
+    },
+    Index {
+        indices: usize,
+        span: Span,
+    },
+    SumLow {
+        variable: Name,
+        span: Span,
+    },
+    SumHigh {
+        variable: Name,
+        span: Span,
+    },
+    SumBody {
+        begin: usize,
+        span: Span,
+    },
+}
+
+/// A function by its name.
+pub(super) struct Called {
+    pub(super) function: String,
+    /// `true` if it is one of an array, whose number was read.
+    pub(super) indexed: bool,
+}
+
+impl Called {
+    pub(super) fn by_name(function: &str) -> Self {
+        Called { function: function.to_owned(), indexed: false }
+    }
 }
 
 impl Pending {
@@ -123,12 +161,17 @@ impl Reader {
                 Ok(false)
             }
             TokenKind::Identifier(word) => {
+                if at_element(parser, word) {
+                    parser.skip(2);
+                    self.pending.push(Pending::Element { function: word.clone(), span });
+                    return Ok(true);
+                }
                 parser.skip(1);
                 if !parser.take('(') {
                     self.push(Operation::Name(word.clone()), span);
                     return Ok(false);
                 }
-                Ok(self.call(parser, word.clone(), 0, span))
+                Ok(self.call(parser, Called::by_name(word), 0, span))
             }
             TokenKind::Literal(text) => {
                 let number = number(parser, text)?;
@@ -203,6 +246,10 @@ impl Reader {
                     | Some(Pending::Array { length: count, .. })
                     | Some(Pending::Index { indices: count, .. }) => *count += 1,
                     None => return Ok(None),
+                    Some(Pending::Element { .. }) => {
+                        return parser
+                            .expected("`]`", "an array of functions has one length: write `lift[0](x)`");
+                    }
                     Some(bracket @ Pending::Parenthesis) => {
                         foreign_words::parentheses(parser);
                         *bracket = Pending::Array { length: 2, span };
@@ -244,13 +291,24 @@ impl Reader {
     }
 
     /// Reads on after the opening parenthesis of a call; `true` if an operand must come next.
-    pub(super) fn call(&mut self, parser: &mut Parser<'_>, function: String, order: u8, span: Span) -> bool {
+    pub(super) fn call(&mut self, parser: &mut Parser<'_>, called: Called, order: u8, span: Span) -> bool {
         if parser.take(')') {
-            self.push(Operation::Call { function, order, arguments: 0 }, span);
+            let Called { function, indexed } = called;
+            self.push(Operation::Call { function, order, arguments: 0, indexed }, span);
             return false;
         }
-        self.pending.push(Pending::Call { function, order, arguments: 1, span });
+        self.pending.push(Pending::Call { called, order, arguments: 1, span });
         true
+    }
+
+    /// Reads on behind the number of a function in an array.
+    fn element(&mut self, parser: &mut Parser<'_>, function: String, span: Span) -> Read<Option<bool>> {
+        let called = Called { function, indexed: true };
+        if parser.take('(') {
+            return Ok(Some(self.call(parser, called, 0, span)));
+        }
+        parser.skip(1);
+        self.derivative(parser, called, span)
     }
 
     /// Reads the token that closes a bracket, separates the parts of a `sum`, or ends the expression.
@@ -300,8 +358,12 @@ impl Reader {
                 }
                 self.push(Operation::SumEnd { begin }, span);
             }
-            Some(Pending::Call { function, order, arguments, span }) => {
-                self.push(Operation::Call { function, order, arguments }, span);
+            Some(Pending::Call { called: Called { function, indexed }, order, arguments, span }) => {
+                self.push(Operation::Call { function, order, arguments, indexed }, span);
+            }
+            Some(Pending::Element { function, span }) => {
+                parser.skip(1);
+                return self.element(parser, function, span);
             }
             Some(Pending::Array { length, span }) => self.push(Operation::Array { length }, span),
             Some(Pending::Index { indices, span }) => self.push(Operation::Index { indices }, span),
@@ -328,6 +390,33 @@ impl Reader {
             self.pending.pop();
             self.push(operation, span);
         }
+    }
+}
+
+/// `true` at `lift[i](` and `lift[i].d1(` where the text declares such a function, or nothing of this name.
+fn at_element(parser: &Parser<'_>, name: &str) -> bool {
+    let is_known =
+        parser.declares_function(name) || !parser.declares(name) && !foreign::CALLED.contains(&name);
+    if *parser.peek_at(1) != TokenKind::Open('[') || !is_known {
+        return false;
+    }
+    let mut depth = 0_usize;
+    let closing = parser.rest().iter().position(|token| {
+        match token.kind {
+            TokenKind::Open(_) => depth += 1,
+            TokenKind::Close(_) => depth = depth.saturating_sub(1),
+            _ => return false,
+        }
+        depth == 0
+    });
+    let Some(closing) = closing else { return false };
+    match parser.peek_at(closing + 1) {
+        TokenKind::Open('(') => true,
+        TokenKind::Punctuation('.', _) => {
+            matches!(parser.peek_at(closing + 2), TokenKind::Identifier(_))
+                && *parser.peek_at(closing + 3) == TokenKind::Open('(')
+        }
+        _ => false,
     }
 }
 

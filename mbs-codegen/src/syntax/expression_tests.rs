@@ -24,8 +24,11 @@ fn postfix(text: &str) -> String {
             Operation::Name(name) => name.clone(),
             Operation::Negate => "neg".into(),
             Operation::Binary(operator) => format!("{operator:?}").to_lowercase(),
-            Operation::Call { function, order: 0, arguments } => format!("{function}/{arguments}"),
-            Operation::Call { function, order, arguments } => format!("{function}.d{order}/{arguments}"),
+            Operation::Call { function, order, arguments, indexed } => {
+                let number = if *indexed { "[]" } else { "" };
+                let derivative = if *order == 0 { String::new() } else { format!(".d{order}") };
+                format!("{function}{number}{derivative}/{arguments}")
+            }
             Operation::Array { length } => format!("[{length}]"),
             Operation::Index { indices } => format!("index/{indices}"),
             Operation::SumBegin { variable, end } => format!("sum {}→{end}", variable.text),

@@ -8,6 +8,7 @@ use core::cell::Cell;
 
 use crate::linear_algebra::factorization::Factorization;
 use crate::mechanism::block::Block;
+use crate::mechanism::function::Function;
 use crate::scalar::number::Scalar;
 
 /// A part of a long function. It is never inlined into its caller, whose length would be that of all parts.
@@ -57,6 +58,13 @@ impl<T: Scalar, const V: usize> Passed<T, V> {
 #[must_use]
 pub fn at<T: Scalar>(values: &[T], place: usize) -> T {
     values.get(place).map_or(T::constant(0.0), |value| *value)
+}
+
+/// Value and K − 1 derivatives of a function in an array, 0 where there is none.
+#[inline(always)]
+#[must_use]
+pub fn jet<T: Scalar, F: Function<T>, const K: usize>(functions: &[F], place: usize, x: T) -> [T; K] {
+    functions.get(place).map_or([T::constant(0.0); K], |function| function.jet(x))
 }
 
 /// Puts a value among others, if it has a place there.

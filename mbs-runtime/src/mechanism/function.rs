@@ -5,7 +5,7 @@ use crate::scalar::number::Scalar;
 /// A function that a text declares, as its emitted type lists it: the requirements on a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FunctionEntry {
-    /// As the text spells it; the public field of this name holds the function.
+    /// As the text spells it, `lift` or `lift[0]`; the public field of this name, or this element of it, holds the function.
     pub name: &'static str,
     /// Coherent SI unit of the value as the text spells it.
     pub unit: &'static str,

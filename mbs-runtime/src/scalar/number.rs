@@ -194,7 +194,7 @@ pub trait Real: Scalar<Real = Self, Mask = bool> + PartialOrd {
 
 /// A floating-point type: the bits of a truth value, sines and cosines, and functions of the library `libm`.
 macro_rules! real {
-    ($real:ident, $word:ident, $sincos:path, $lanes:path, $hypot:path, $hypots:path, { $($name:ident($($other:ident)?) = $function:ident,)* }) => {
+    ($real:ident, $word:ident, $sincos:path, $lanes:path, $hypot:path, $hypots:path, $atan2:path, { $($name:ident($($other:ident)?) = $function:ident,)* }) => {
         impl Scalar for $real {
             type Real = $real;
             type Mask = bool;
@@ -256,6 +256,10 @@ macro_rules! real {
             fn hypot(self, other: Self) -> Self {
                 $hypot(self, other)
             }
+            #[inline(always)]
+            fn atan2(self, x: Self) -> Self {
+                $atan2(self, x)
+            }
             $(
                 #[inline(always)]
                 fn $name(self $(, $other: Self)?) -> Self {
@@ -288,14 +292,14 @@ macro_rules! real {
     };
 }
 
-real!(f64, u64, trigonometry::sin_cos, trigonometry::sin_cos_of_lanes, lengths::hypot, lengths::hypot_of_lanes, {
+real!(f64, u64, trigonometry::sin_cos, trigonometry::sin_cos_of_lanes, lengths::hypot, lengths::hypot_of_lanes, trigonometry::atan2, {
     sqrt() = sqrt, exp() = exp, ln() = log, tan() = tan, asin() = asin, acos() = acos,
-    atan() = atan, atan2(x) = atan2, sinh() = sinh, cosh() = cosh, tanh() = tanh, asinh() = asinh,
+    atan() = atan, sinh() = sinh, cosh() = cosh, tanh() = tanh, asinh() = asinh,
     acosh() = acosh, atanh() = atanh, powf(exponent) = pow,
 });
-real!(f32, u32, trigonometry::sin_cos_single, trigonometry::sin_cos_of_lanes_single, libm::hypotf, lengths::each, {
+real!(f32, u32, trigonometry::sin_cos_single, trigonometry::sin_cos_of_lanes_single, libm::hypotf, lengths::each, libm::atan2f, {
     sqrt() = sqrtf, exp() = expf, ln() = logf, tan() = tanf, asin() = asinf, acos() = acosf,
-    atan() = atanf, atan2(x) = atan2f, sinh() = sinhf, cosh() = coshf, tanh() = tanhf,
+    atan() = atanf, sinh() = sinhf, cosh() = coshf, tanh() = tanhf,
     asinh() = asinhf, acosh() = acoshf, atanh() = atanhf, powf(exponent) = powf,
 });
 

@@ -73,7 +73,9 @@ macro_rules! comparable {
     ($make:expr, $kind:ident, [$($function:ident),* $(,)?] $(,)?) => {
         |values: &[(usize, f64)]| {
             #[allow(unused_imports)]
-            use $crate::erased::in_double::{Given, InAllNumbers, InDoubleAlone};
+            use $crate::erased::in_double::{
+                EachInAllNumbers, EachInDoubleAlone, Given, InAllNumbers, InDoubleAlone,
+            };
             let given = $make;
             let mut doubles = ::std::vec::Vec::new();
             $(if (&Given(::core::clone::Clone::clone(&given.$function))).is_double() {

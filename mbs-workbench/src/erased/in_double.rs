@@ -36,8 +36,8 @@ impl<T: Scalar, F: Function<f64>> Function<T> for InDouble<F> {
     }
 }
 
-/// A function of the caller whose numbers are looked at: `(&Given(function)).chosen()` is the function itself where it takes all numbers
-/// of a study, else [`InDouble`]. Both traits must be in scope; the compiler takes the first that fits.
+/// A function of the caller, or an array of them, whose numbers are looked at: `(&Given(function)).chosen()` is the function itself where
+/// it takes all numbers of a study, else [`InDouble`]. All four traits must be in scope; the compiler takes the first that fits.
 #[derive(Clone, Debug)]
 pub struct Given<F>(pub F);
 
@@ -89,6 +89,49 @@ impl<F: Clone + Function<f64>> InDoubleAlone for &Given<F> {
     }
 }
 
+/// An array of functions that take all numbers of a study.
+pub trait EachInAllNumbers {
+    /// The functions.
+    type Functions;
+    /// The functions as they are.
+    fn chosen(&self) -> Self::Functions;
+    /// `false`: they take other numbers than `f64`.
+    fn is_double(&self) -> bool {
+        false
+    }
+}
+
+impl<F: Clone, const N: usize> EachInAllNumbers for Given<[F; N]>
+where
+    Given<F>: InAllNumbers,
+{
+    type Functions = [F; N];
+
+    fn chosen(&self) -> [F; N] {
+        self.0.clone()
+    }
+}
+
+/// An array of functions in `f64`.
+pub trait EachInDoubleAlone {
+    /// The functions in all numbers.
+    type Functions;
+    /// The functions in all numbers.
+    fn chosen(&self) -> Self::Functions;
+    /// `true`: they take no other numbers.
+    fn is_double(&self) -> bool {
+        true
+    }
+}
+
+impl<F: Clone + Function<f64>, const N: usize> EachInDoubleAlone for &Given<[F; N]> {
+    type Functions = [InDouble<F>; N];
+
+    fn chosen(&self) -> [InDouble<F>; N] {
+        self.0.clone().map(InDouble)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,5 +180,9 @@ mod tests {
         assert!(!(&Given(Line)).is_double());
         let _: InDouble<Cube> = (&Given(Cube)).chosen();
         let _: Line = (&Given(Line)).chosen();
+        assert!((&Given([Cube, Cube])).is_double());
+        assert!(!(&Given([Line, Line])).is_double());
+        let _: [InDouble<Cube>; 2] = (&Given([Cube, Cube])).chosen();
+        let _: [Line; 2] = (&Given([Line, Line])).chosen();
     }
 }

@@ -78,7 +78,10 @@ impl Study {
     fn item(&self, (constructor, own): (&str, &str), functions: &[FunctionEntry]) -> String {
         let Study { kind, make, .. } = self;
         let laws = if self.with_laws { laws(constructor, functions) } else { String::new() };
-        let names: Vec<&str> = functions.iter().map(|function| function.name).collect();
+        // Functions of an array, `lift[0]` and on, are one argument.
+        let name = |function: &FunctionEntry| function.name.split('[').next().unwrap_or_default();
+        let mut names: Vec<&str> = functions.iter().map(name).collect();
+        names.dedup();
         let names = if self.in_doubles { format!(", {own}, [{}]", names.join(", ")) } else { String::new() };
         format!(
             "pub const STUDIED: fn(&[(usize, f64)]) -> ::mbs_workbench::{kind} = ::mbs_workbench::{make}!({constructor}{names}); {laws}"

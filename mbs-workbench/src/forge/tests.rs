@@ -4,6 +4,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
+use crate::card::Card;
 use crate::text_file::TextFile;
 
 const TEXT: &str =
@@ -205,12 +206,95 @@ fn programs_of_a_name_that_were_not_used_for_longest_are_deleted() {
 fn a_text_with_functions_of_the_caller_is_referred_to_a_crate() {
     let forge = forge("functions", BUILD);
     let path = forge.workspace.join("cam.mbs");
-    let text = "pub mechanism Cam; coord y: m; function lift: m(s), C3; drive motor: y == lift(t);";
-    fs::write(&path, text).expect("a text");
-    let text = TextFile::read(&path.display().to_string()).expect("a text");
-    let error = Blueprint::of_text(&text).expect_err("a function").to_string();
-    assert!(
-        error.contains("`lift`") && error.contains("mbs new NAME") && error.contains("Cam::new"),
-        "{error}"
-    );
+    for (kind, call) in [("m", "lift(t)"), ("[m; 2]", "lift[1](t) + lift[0](t)")] {
+        let text =
+            format!("pub mechanism Cam; coord y: m; function lift: {kind}(s), C3; drive motor: y == {call};");
+        fs::write(&path, text).expect("a text");
+        let text = TextFile::read(&path.display().to_string()).expect("a text");
+        let error = Blueprint::of_text(&text).expect_err("a function").to_string();
+        assert!(
+            error.contains("give: `lift`\n") && error.contains("mbs new NAME") && error.contains("Cam::new"),
+            "{error}"
+        );
+    }
+}
+
+mod valves {
+    //! Functions of the caller, some in arrays.
+
+    use mbs_runtime::Function;
+    use mbs_runtime::driver::Harmonic;
+
+    use crate::erased::costs::Comparable;
+
+    mbs_runtime::mechanism! {
+        /// Two valves and a pump on one shaft.
+        pub mechanism Valves;
+        function lift: [m; 2](rad), C3, periodic TAU;
+        function stroke: m(rad), C1, periodic TAU;
+        coord theta: rad;
+        coord y: [m; 2];
+        drive cam: theta == 10 [rad/s]*t;
+        constraint faces { for i in 0..2 { y[i] == lift[i](theta); } }
+        out pumped: m = stroke(theta);
+    }
+
+    const LIFT: Harmonic = Harmonic { offset: 0.0, amplitude: 8e-3, frequency: 1.0, phase: 0.0 };
+
+    /// A function in `f64` alone.
+    #[derive(Clone)]
+    struct InDoubles;
+
+    impl Function<f64> for InDoubles {
+        const ORDER: usize = 9;
+
+        fn jet<const K: usize>(&self, x: f64) -> [f64; K] {
+            LIFT.jet(x)
+        }
+    }
+
+    /// All functions the same.
+    pub fn valves() -> Valves<Harmonic, Harmonic> {
+        Valves::new([LIFT; 2], LIFT)
+    }
+
+    /// Those of the array in `f64` alone.
+    fn valves_in_doubles() -> Valves<InDoubles, Harmonic> {
+        Valves::new([InDoubles, InDoubles], LIFT)
+    }
+
+    /// Functions in `f64` alone, as the program of `mbs cost` finds them.
+    pub fn doubles() -> [Vec<&'static str>; 2] {
+        let all: fn(&[(usize, f64)]) -> Comparable = crate::comparable!(valves(), Valves, [lift, stroke]);
+        let some: fn(&[(usize, f64)]) -> Comparable =
+            crate::comparable!(valves_in_doubles(), Valves, [lift, stroke]);
+        [all, some].map(|studied| match studied(&[]) {
+            Comparable::Driven(driven) => driven.doubles,
+            _ => panic!("drives move it"),
+        })
+    }
+}
+
+#[test]
+fn a_study_takes_each_function_of_an_array_and_makes_the_mechanism_of_the_arrays() {
+    let forge = forge("arrays", BUILD);
+    let card = crate::card!(valves::valves());
+    let instance = card.equations();
+    let functions = instance.functions();
+    let names: Vec<&str> = functions.iter().map(|function| function.name).collect();
+    assert_eq!(names, ["lift[0]", "lift[1]", "stroke"]);
+    // A constructor of the text alone needs no library.
+    let card = Card { constructor: "Valves::default()", ..card };
+    let study = |study: &Study| {
+        let text = ("Valves", instance.source(), functions);
+        Blueprint::study_of_card(study, &forge, &card, text).expect("a blueprint").main
+    };
+    let main = study(&Study::COST);
+    for law in ["(\"lift[0]\", ", "(\"lift[1]\", ", "(&mechanism.lift[0], x)", "(&mechanism.lift[1], x)"] {
+        assert!(main.contains(law), "{law}: {main}");
+    }
+    let main = study(&Study::COST.in_doubles());
+    assert!(main.contains("comparable!(Valves::default(), Valves, [lift, stroke])"), "{main}");
+    // That macro takes arrays.
+    assert_eq!(valves::doubles(), [vec![], vec!["lift"]]);
 }

@@ -5,7 +5,8 @@ use mbs_codegen::vocabulary::drawn;
 use super::pieces::{Piece, PieceKind};
 
 /// Words besides those of pictures that a value or a bracket may follow, as `rate [0, 1]`; they may be names as well, as in `rate[0]`.
-const BEFORE_VALUES: [&str; 7] = ["at", "rate", "in", "tolerance", "right", "up", "span"];
+const BEFORE_VALUES: [&str; 13] =
+    ["at", "rate", "in", "tolerance", "right", "up", "span", "about", "turned", "on", "of", "near", "within"];
 
 /// `true` where a value may stand behind the word.
 fn takes_value(word: &str) -> bool {

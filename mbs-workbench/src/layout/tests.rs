@@ -39,6 +39,17 @@ fn words_keep_a_blank_before_a_vector_and_names_have_none_before_an_index() {
         "draw slider S along [1,0];let a = theta [0] + rate[1];start p = [0, 0] rate [0,\t0];",
         "draw slider S along [1, 0];\nlet a = theta[0] + rate[1];\nstart p = [0, 0] rate [0, 0];\n",
     );
+    let curves = "force f: [1N, 0] on [0, y];\nfoot f of [x, y] on c within 1m near [1][0];\n\
+                  curve c = polar r about [0, 0] turned [1][0];\n";
+    statements(curves, curves);
+}
+
+#[test]
+fn arrays_of_functions_are_written_as_arrays_and_calls_are() {
+    statements(
+        "function  lift:[ m ;2 ] ( rad ),C3 ;let a = lift [ 1 ] ( phi )+lift[0] . d1 ( phi );curve c=polar lift [0] about [0,0];",
+        "function lift: [m; 2](rad), C3;\nlet a = lift[1](phi) + lift[0].d1(phi);\ncurve c = polar lift[0] about [0, 0];\n",
+    );
 }
 
 #[test]

@@ -26,7 +26,7 @@ pub use cards::{verify, verify_against, verify_digits};
 pub use check::{Check, CheckError, check};
 pub use environment::EnvironmentError;
 pub use oracle::{Oracle, OracleError};
-pub use stand_in::StandIn;
+pub use stand_in::{NumberedStandIn, StandIn};
 
 use crate::erased::facade::AnyEquations;
 

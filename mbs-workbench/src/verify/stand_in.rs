@@ -13,7 +13,27 @@ impl<T: Scalar, const I: usize> Function<T> for StandIn<I> {
     const ORDER: usize = u8::MAX as usize;
 
     fn jet<const K: usize>(&self, x: T) -> [T; K] {
-        let terms = mbs_codegen::stand_in(I);
+        NumberedStandIn(I).jet(x)
+    }
+}
+
+/// [`StandIn`] whose index is a value: functions of an array are of one type. [`array`](Self::array) makes all of one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NumberedStandIn(pub usize);
+
+impl NumberedStandIn {
+    /// The stand-ins of an array of N functions whose first has the index `first`: behind all functions that the text declares before it.
+    #[must_use]
+    pub fn array<const N: usize>(first: usize) -> [Self; N] {
+        core::array::from_fn(|index| NumberedStandIn(first + index))
+    }
+}
+
+impl<T: Scalar> Function<T> for NumberedStandIn {
+    const ORDER: usize = u8::MAX as usize;
+
+    fn jet<const K: usize>(&self, x: T) -> [T; K] {
+        let terms = mbs_codegen::stand_in(self.0);
         let angles = terms.map(|[_, w, p]| T::constant(w) * x + T::constant(p));
         let (sines, cosines) = T::sin_cos(angles);
         core::array::from_fn(|order| {

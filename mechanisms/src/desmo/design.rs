@@ -137,9 +137,8 @@ impl Design {
     ///
     /// # Errors
     /// Those of [`Cam::new`] and [`Pitch::new`].
-    pub fn mechanism(&self) -> Result<Desmo<Curve, Curve, f64, Kinematic>, CamError> {
-        let [opening, shutting] = self.curves()?;
-        Ok(self.moved_by(opening, shutting))
+    pub fn mechanism(&self) -> Result<Desmo<Curve, f64, Kinematic>, CamError> {
+        Ok(self.moved_by(self.curves()?))
     }
 
     /// The pitch curves of both cams in closed form.
@@ -152,11 +151,7 @@ impl Design {
     }
 
     /// The mechanism on other pitch curves, as tables of them.
-    pub fn moved_by<F, G>(&self, opening: F, shutting: G) -> Desmo<F, G, f64, Kinematic>
-    where
-        F: Function<f64>,
-        G: Function<f64>,
-    {
+    pub fn moved_by<F: Function<f64>>(&self, pitch: [F; 2]) -> Desmo<F, f64, Kinematic> {
         let arms = |rocker: &Rocker| {
             (rocker.pivot, apart(rocker.pivot, rocker.cam_pad), apart(rocker.pivot, rocker.valve_pad))
         };
@@ -171,7 +166,7 @@ impl Design {
             closer_cam,
             closer_valve,
             sense: self.direction.sign(),
-            ..Desmo::new(opening, shutting)
+            ..Desmo::new(pitch)
         }
     }
 }

@@ -43,7 +43,7 @@ use mbs_workbench::cams::follower::Direction;
 use mbs_workbench::card;
 use mbs_workbench::card::Card;
 use mbs_workbench::erased::erase::erase;
-use mbs_workbench::verify::StandIn;
+use mbs_workbench::verify::NumberedStandIn;
 
 pub use design::Design;
 
@@ -61,16 +61,15 @@ mechanism! {
     param speed: rad/s = 9000rpm;
     /// Angle of the cam at the start: the valve is closed.
     param begin: rad = -180deg;
-    /// Polar radii of the pitch curves.
-    function opening: m(rad), C3, periodic TAU;
-    function shutting: m(rad), C3, periodic TAU;
+    /// Polar radii of the pitch curves: of the opener's cam, of the closer's.
+    function pitch: [m; 2](rad), C3, periodic TAU;
 
     coord theta: rad = -180deg;
     coord opener: rad = 0;
     coord s: m = 0;
     let opener_pad = opener_pivot + rot(opener)*opener_cam;
     let opener_tip = opener_pivot + rot(opener)*opener_valve;
-    curve opening_cam = polar opening about centre turned sense*theta;
+    curve opening_cam = polar pitch[0] about centre turned sense*theta;
     /// Way of the finger's pad along the valve's axis.
     let opener_way = opener_valve.1 - (rot(opener)*opener_valve).1;
     branch finger: cos(opener) > 0;
@@ -90,7 +89,7 @@ mechanism! {
         let closer_pad = closer_pivot + rot(closer)*closer_cam;
         let closer_tip = closer_pivot + rot(closer)*closer_valve;
         let closer_way = closer_valve.1 - (rot(closer)*closer_valve).1;
-        curve closing_cam = polar shutting about centre turned sense*theta;
+        curve closing_cam = polar pitch[1] about centre turned sense*theta;
         branch bell_crank: cos(closer) > 0;
     }
     effect permanent {
@@ -251,7 +250,7 @@ mechanism! {
 ///
 /// # Panics
 /// Never: its places and its law are numbers of this crate, and tests make it.
-pub fn desmo() -> DesmoKinematic<design::Curve, design::Curve> {
+pub fn desmo() -> DesmoKinematic<design::Curve> {
     let ready = Design::law(0.011, 160_f64.to_radians())
         .and_then(|law| Design::ready(law, Direction::CounterClockwise).mechanism());
     ready.expect("a pair of cams for the law")
@@ -259,7 +258,7 @@ pub fn desmo() -> DesmoKinematic<design::Curve, design::Curve> {
 
 /// Entry in the list of mechanisms.
 pub const CARD: Card = card!(desmo())
-    .compared_as(|| erase(DesmoKinematic::new(StandIn::<0>, StandIn::<1>)))
+    .compared_as(|| erase(DesmoKinematic::new(NumberedStandIn::array(0))))
     .studied_by(&study::STUDY);
 
 #[cfg(test)]

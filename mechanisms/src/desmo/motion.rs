@@ -10,10 +10,10 @@ use super::design::{Curve, Design};
 use super::{DesmoFriction, DesmoHeld, DesmoOrdinary};
 
 /// The valvetrain with contacts, play and friction.
-pub type Valvetrain = DesmoFriction<Curve, Curve>;
+pub type Valvetrain = DesmoFriction<Curve>;
 
 /// The valvetrain with a valve spring in place of the closing cam.
-pub type Ordinary = DesmoOrdinary<Curve, Curve>;
+pub type Ordinary = DesmoOrdinary<Curve>;
 
 /// Names of [`Turn::forces`].
 pub const FORCES: [&str; 5] =
@@ -24,13 +24,9 @@ pub const FORCES: [&str; 5] =
 ///
 /// # Errors
 /// Those of [`Stepper::assemble`] and [`Stepper::advance_to`].
-pub fn against_law(
-    design: &Design,
-    [opening, shutting]: &[Curve; 2],
-    shift: f64,
-) -> Result<[f64; 4], Failure> {
+pub fn against_law(design: &Design, pitch: &[Curve; 2], shift: f64) -> Result<[f64; 4], Failure> {
     const PLACES: u32 = 720;
-    let mut mechanism = design.moved_by(opening.clone(), shutting.clone());
+    let mut mechanism = design.moved_by(pitch.clone());
     mechanism.speed = 1.0;
     let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0)?;
     let (mut errors, mut least, mut most) = ([0.0_f64; 3], f64::INFINITY, f64::NEG_INFINITY);
@@ -67,13 +63,8 @@ impl Misfit {
     ///
     /// # Errors
     /// Those of [`Stepper::assemble`] and [`Stepper::advance_to`], where the cams contradict each other by more than the text allows.
-    pub fn of(
-        design: &Design,
-        [opening, shutting]: &[Curve; 2],
-        places: u32,
-        shift: f64,
-    ) -> Result<Self, Failure> {
-        let mut mechanism: DesmoHeld<_, _> = design.moved_by(opening.clone(), shutting.clone()).scene();
+    pub fn of(design: &Design, pitch: &[Curve; 2], places: u32, shift: f64) -> Result<Self, Failure> {
+        let mut mechanism: DesmoHeld<_> = design.moved_by(pitch.clone()).scene();
         mechanism.speed = 1.0;
         let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0)?;
         let mut found = Misfit::default();

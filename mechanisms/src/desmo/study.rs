@@ -118,10 +118,10 @@ impl<'a> Chain<'a> {
     }
 
     /// The valvetrain of a case on these pitch curves.
-    fn valvetrain(&self, [opening, shutting]: &[Curve; 2], case: &Case) -> Valvetrain {
+    fn valvetrain(&self, pitch: &[Curve; 2], case: &Case) -> Valvetrain {
         let value = |name| self.values.get(name);
         let [hardness, damping, play] = case.factors;
-        let mut valvetrain: Valvetrain = self.design.moved_by(opening.clone(), shutting.clone()).scene();
+        let mut valvetrain: Valvetrain = self.design.moved_by(pitch.clone()).scene();
         valvetrain.speed = case.speed;
         valvetrain.open_play = play * value("open_play");
         valvetrain.close_play = play * value("close_play");
@@ -140,8 +140,7 @@ impl<'a> Chain<'a> {
     /// The valvetrain of a case with a valve spring in place of the closing cam.
     fn ordinary(&self, case: &Case) -> Ordinary {
         let value = |name| self.values.get(name);
-        let [opening, shutting] = self.curves.clone();
-        let mut valvetrain: Ordinary = self.design.moved_by(opening, shutting).scene();
+        let mut valvetrain: Ordinary = self.design.moved_by(self.curves.clone()).scene();
         let [hardness, damping, play] = case.factors;
         valvetrain.speed = case.speed;
         valvetrain.open_play = play * value("open_play");

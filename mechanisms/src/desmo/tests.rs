@@ -45,8 +45,7 @@ fn what_both_cams_contradict_each_other_by_is_the_mismatch_of_the_row_that_yield
     let tables = exact.each_ref().map(|curve| curve.table(90).expect("a table"));
     let misfit = Misfit::of(&design, &tables, 360, 0.3).expect("a contradiction below the width");
     // The same from permanent contact without the row: the distance of the rockers and its derivatives.
-    let [opening, shutting] = tables;
-    let mut mechanism = design.moved_by(opening, shutting);
+    let mut mechanism = design.moved_by(tables);
     mechanism.speed = 1.0;
     let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0).expect("permanent contact");
     // Positions of rows that do not yield are closed to 5e-14 of the reference length.
@@ -71,7 +70,7 @@ fn the_first_impacts_are_those_of_an_independent_program() {
         [(45, 0.0007354327731979067), (54, 0.00652443145074413), (72, 0.009013459519438745)];
     let law = Design::law(0.011, 160_f64.to_radians()).expect("a law");
     let design = Design::ready(law, Direction::CounterClockwise);
-    let valvetrain: DesmoFriction<_, _> = design.mechanism().expect("a pair of cams").scene();
+    let valvetrain: DesmoFriction<_> = design.mechanism().expect("a pair of cams").scene();
     let method: Explicit<DormandPrince8, Projection> = Explicit::default();
     let run = Simulation::start_from_text(valvetrain.clone(), method, 0.0).expect("it starts");
     let mut run = run.with_tolerance(Tolerance::new(1e-8));

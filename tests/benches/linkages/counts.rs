@@ -212,7 +212,7 @@ pub fn table(rows: &[(&str, &str, [f64; PARTS.len()])], times: &[(&str, [f64; 2]
     let mut text = format!(
         "## Instructions of a step\n\n\
          `cargo bench -p mbs-tests --bench linkages -- --counts --docs` writes this table: instructions of a step, mean over 360 steps of a \
-         motion, counted by callgrind with `target-cpu=x86-64-v3`. Sines: sines and cosines. Evaluation: rows, Jacobian, γ. Elimination: \
+         motion, counted by callgrind with `target-cpu=skylake`. Sines: sines and cosines. Evaluation: rows, Jacobian, γ. Elimination: \
          factors and solutions. Checks: of closing, margin, branches and of the distance from the prediction, with the iteration itself. State: \
          prediction, storing of the state. Merged: vectors \
          that the compiler made of several lines, of rates and checks most of all. Code by hand is `tests/benches/linkages/by_hand.rs`, whose first lines say what it leaves out.\n\n\

@@ -35,7 +35,7 @@ const REPEATED: usize = 20;
 const REQUIREMENTS: &str = "scipy==1.17.1\nnumpy==2.4.6\nexudyn==1.13.6\n";
 
 type Table = &'static PeriodicQuintic<KNOTS>;
-type Valvetrain = DesmoClearance<Table, Table>;
+type Valvetrain = DesmoClearance<Table>;
 
 /// A program with one of its methods.
 #[derive(Clone, Copy)]
@@ -109,8 +109,7 @@ impl Bench {
     fn valvetrain(&self, play: u32) -> Result<Valvetrain, String> {
         let law = Design::law(0.011, 160_f64.to_radians()).map_err(|error| error.to_string())?;
         let design = Design::ready(law, Direction::CounterClockwise);
-        let [opening, shutting] = self.tables;
-        let mut valvetrain: Valvetrain = design.moved_by(opening, shutting).scene();
+        let mut valvetrain: Valvetrain = design.moved_by(self.tables).scene();
         valvetrain.speed = 9000.0 * PI / 30.0;
         valvetrain.open_play = f64::from(play) * 1e-4;
         valvetrain.close_play = f64::from(play) * 3e-5;

@@ -13,7 +13,7 @@ use mechanisms::desmo::{Design, DesmoFriction};
 
 type Method = Explicit<DormandPrince8, Projection>;
 type Fixed = Explicit<RungeKutta4, Projection>;
-type Valvetrain = DesmoFriction<Curve, Curve>;
+type Valvetrain = DesmoFriction<Curve>;
 
 /// Names of the quantities of a peak in the reference.
 const QUANTITIES: [&str; 6] = ["valve", "nose", "tip", "seat", "heel", "fork"];

@@ -1,7 +1,9 @@
 //! Mechanisms cut as long ones, compared with themselves in one piece.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use mbs_runtime::dynamics::{Explicit, RungeKutta4, Simulation, VelocityTransformation};
-use mbs_runtime::{Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Real, Scalar, Stepper};
+use mbs_runtime::{Dynamic, Function, Kinematic, Lanes, Mechanism, Partitioned, Real, Scalar, Stepper};
 
 /// Both do the same operations; loops over blocks may leave an iteration of Newton's method out, or do one more.
 const ROUNDING: f64 = 1e-11;
@@ -11,6 +13,26 @@ const STEPS: usize = 100;
 
 fn main() {
 // COMPARISONS
+}
+
+/// Functions of an array, each another one: sin(k + x) with k from 1 to 12 in the order in which they are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Law(f64);
+
+impl Default for Law {
+    fn default() -> Self {
+        static MADE: AtomicU32 = AtomicU32::new(0);
+        Law(f64::from(MADE.fetch_add(1, Ordering::Relaxed) % 12 + 1))
+    }
+}
+
+impl<T: Scalar> Function<T> for Law {
+    const ORDER: usize = 4;
+
+    fn jet<const K: usize>(&self, x: T) -> [T; K] {
+        let ([sine], [cosine]) = T::sin_cos([T::constant(self.0) + x]);
+        std::array::from_fn(|order| [sine, cosine, -sine, -cosine][order % 4])
+    }
 }
 
 /// Positions, velocities and accelerations of driven motion.

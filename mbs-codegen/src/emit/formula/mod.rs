@@ -208,8 +208,15 @@ impl<'a> Printer<'a> {
             }
             Node::Binary(function, a, b) => Sum::atom(notation.call_two(function, &text(a), &text(b))),
             Node::Call { function, order, argument } => {
-                let name = self.model.functions.get(function as usize).map_or("?", |f| &f.name.text);
-                Sum::atom(notation.declared(name, usize::from(order), &text(argument)))
+                let function = self.model.functions.get(function as usize);
+                let name = function.map_or_else(
+                    || "?".into(),
+                    |function| match notation {
+                        Notation::Text => function.label(),
+                        Notation::Latex => function.component(),
+                    },
+                );
+                Sum::atom(notation.declared(&name, usize::from(order), &text(argument)))
             }
             Node::Select { less, than, yes, no } => {
                 let [less, than, yes, no] = [less, than, yes, no].map(text);

@@ -58,6 +58,17 @@ fn latex_reads_as_on_the_slides() {
 }
 
 #[test]
+fn functions_of_an_array_have_their_numbers() {
+    let text = "mechanism M; function lift: [1; 12](1), C3; coord x: 1; constraint c { lift[0](x) + lift[11].d1(2*x) == 0; }";
+    let found = formulas(text, None).expect("a good text");
+    assert_eq!(found.phi, ["lift[0](x) + lift[11]'(2*x)"]);
+    assert_eq!(found.phi_q[0], ["lift[0]'(x) + 2*lift[11]''(2*x)"]);
+    let found = latex_formulas(text, None).expect("a good text");
+    let expected = "\\mathit{lift}_{0}\\left(x\\right) + \\mathit{lift}_{11}'\\left(2\\,x\\right)";
+    assert_eq!(found.phi, [expected]);
+}
+
+#[test]
 fn parentheses_stand_only_where_they_are_needed() {
     let cases = [
         ("x - (a - b)", "x - a + b"),

@@ -158,6 +158,10 @@ pub trait Naming {
     fn operand(&mut self, id: NodeId) -> String;
     /// A value that it computes.
     fn defined(&mut self, id: NodeId) -> String;
+    /// A place in an array of functions, where lines that differ in it are one.
+    fn place(&mut self, _: usize) -> Option<String> {
+        None
+    }
 }
 
 /// Every value by its own name.
@@ -204,12 +208,22 @@ pub fn jet(jet: &FunctionDerivatives, scope: &Scope<'_>, names: &mut impl Naming
     let FunctionDerivatives { function, argument, orders } = jet;
     let defined = orders.iter().map(|id| id.map_or_else(|| "_".to_owned(), |id| names.defined(id)));
     let (defined, count) = (defined.collect::<Vec<_>>().join(", "), orders.len());
-    let (kind, place) = scope.function(*function as usize);
+    let (kind, field, index) = scope.function(*function as usize);
+    let place = index.and_then(|index| names.place(index));
     let argument = names.operand(*argument);
-    let _ = writeln!(
-        text,
-        "let [{defined}] = <{kind} as __mbs::Function<T>>::jet::<{count}>(&{place}, {argument});"
-    );
+    let _ = match place {
+        Some(place) => writeln!(
+            text,
+            "let [{defined}] = __mbs::__private::chunks::jet::<T, {kind}, {count}>(&{field}, {place}, {argument});"
+        ),
+        None => {
+            let element = index.map_or_else(String::new, |index| format!("[{index}]"));
+            writeln!(
+                text,
+                "let [{defined}] = <{kind} as __mbs::Function<T>>::jet::<{count}>(&{field}{element}, {argument});"
+            )
+        }
+    };
 }
 
 fn of_angles(angles: &[Angle], part: impl FnMut(&Angle) -> String) -> String {

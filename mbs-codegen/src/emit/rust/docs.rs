@@ -135,10 +135,10 @@ fn reference(model: &Model, lines: &mut Vec<String>) {
 
 /// Derivatives that each declared function must provide.
 fn functions(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
-    for demand in continuity::highest(model, equations) {
+    for demand in continuity::of_declarations(model, continuity::highest(model, equations)) {
         let Some(function) = model.functions.get(demand.function) else { continue };
         let Demand { order, by, .. } = demand;
-        let (name, unit, argument) = (&function.name.text, &function.unit, &function.argument_unit);
+        let (name, unit, argument) = (&function.name.text, function.declared_unit(), &function.argument_unit);
         let most = if order == 0 {
             "its value alone is used".into()
         } else {
@@ -150,7 +150,7 @@ fn functions(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
     for missing in equations.dynamics.iter().flat_map(|dynamics| &dynamics.missing) {
         let Some(function) = model.functions.get(missing.function) else { continue };
         let (slope, derivative) = (missing.slopes.name(), missing.derivative());
-        let (name, declared) = (&function.name.text, function.continuity);
+        let (name, declared) = (function.label(), function.continuity);
         lines.push(format!(
             "No implicit methods, rests and small motions: {slope} needs {derivative} of `{name}`, declared C{declared}."
         ));

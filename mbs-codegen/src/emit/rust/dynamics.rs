@@ -229,7 +229,7 @@ fn missing(dynamics: &Dynamics, model: &Model, runtime: &TokenStream) -> TokenSt
     };
     let (slope, order, declared) = (missing.slopes.name(), missing.order, function.continuity);
     let acts_at_rest = missing.slopes.acts_at_rest();
-    let (name, unit) = (&function.name.text, &function.unit);
+    let (name, unit) = (function.label(), &function.unit);
     let line = quote_spanned!(function.name.span=> ::core::line!());
     quote! {
         const MISSING_SLOPE: ::core::option::Option<&'static #runtime::MissingSlope> =

@@ -85,9 +85,17 @@ pub fn constructors(text: &Text, scenes: &Scenes, generics: &Generics) -> TokenS
     // An argument is a pattern: `Some`, or a constant that the caller has, would be matched.
     let arguments_of: Vec<Ident> =
         shared.functions.iter().map(|function| format_ident!("__{}", function.name.text)).collect();
-    let given =
-        arguments_of.iter().zip(generics.functions()).map(|(argument, kind)| quote! { #argument: #kind });
-    let functions = idents.iter().map(|_| quote! { #default::default() });
+    let types = shared
+        .functions
+        .iter()
+        .zip(generics.functions())
+        .map(|(function, kind)| array_type(quote! { #kind }, &function.shape()));
+    let given = arguments_of.iter().zip(types).map(|(argument, kind)| quote! { #argument: #kind });
+    let functions = shared.functions.iter().map(|function| match function.array {
+        // Arrays of up to 32 have a default of their own.
+        Some(_) => quote! { ::core::array::from_fn(|_| #default::default()) },
+        None => quote! { #default::default() },
+    });
     let docs = new_docs(text, scenes);
     quote! {
         #allow
@@ -379,7 +387,11 @@ pub fn function_docs(function: &Function) -> Vec<String> {
         count => format!("{count} continuous derivatives"),
     };
     let period = period.map_or(String::new(), |period| format!(", period {period}"));
-    docs.push(format!(" Function (`{unit}` of `{argument_unit}`), {derivatives}{period}."));
+    let kind = match function.array {
+        Some(array) => format!("Array of {} functions", array.length),
+        None => "Function".into(),
+    };
+    docs.push(format!(" {kind} (`{unit}` of `{argument_unit}`), {derivatives}{period}."));
     docs
 }
 

@@ -175,7 +175,11 @@ pub fn bodies(
         remembered,
         kept_position: program.position.fields.len(),
         orders: orders(model, &demands),
-        parameters: emitter.parameters(&program.parameters, smooth_enough(&demands, &bare), &bare),
+        parameters: emitter.parameters(
+            &program.parameters,
+            smooth_enough(&continuity::of_declarations(model, demands), &bare),
+            &bare,
+        ),
         guess: emitter.of_parameters("guess", &program.guesses, &some(&equations.guesses)),
         coordinate_scales: emitter.of_parameters(
             "coordinate_scales",
@@ -368,7 +372,7 @@ fn orders(model: &Model, demands: &[Demand]) -> Vec<u8> {
 fn smooth_enough(demands: &[Demand], scope: &Scope<'_>) -> String {
     let mut text = String::new();
     for Demand { function, order, by, .. } in demands.iter().filter(|demand| demand.order > 0) {
-        let (kind, _) = scope.function(*function);
+        let (kind, ..) = scope.function(*function);
         let name = scope.model.functions.get(*function).map_or("", |function| &function.name.text);
         let plural = if *order == 1 { "" } else { "s" };
         let message =

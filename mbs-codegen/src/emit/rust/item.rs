@@ -7,8 +7,8 @@ use crate::diagnostics::Diagnostics;
 use crate::emit::rust::SceneFunctions;
 use crate::emit::rust::dynamic_trait;
 use crate::emit::rust::fields::{
-    access, constructors, enclosed, field_docs, field_type, function_docs, ident, in_other_numbers, in_part,
-    markers,
+    access, array_type, constructors, enclosed, field_docs, field_type, function_docs, ident,
+    in_other_numbers, in_part, markers,
 };
 use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::generics::Generics;
@@ -38,6 +38,7 @@ pub fn item(
     let generics = Generics::of(text, scenes);
     let functions = shared.functions.iter().zip(generics.functions()).map(|(function, kind)| {
         let (docs, ident) = (function_docs(function), ident(&function.name));
+        let kind = array_type(quote! { #kind }, &function.shape());
         quote! { #(#[doc = #docs])* pub #ident: #kind, }
     });
     let (declared, declaration) = (generics.declared(runtime), markers(scenes).declaration);

@@ -92,10 +92,12 @@ impl Scope<'_> {
         }
     }
 
-    /// Type and place of a declared function.
-    pub fn function(&self, index: usize) -> (&str, String) {
-        let name = self.model.functions.get(index).map_or("", |function| &function.name.text);
-        (self.types.get(index).map_or("", String::as_str), format!("self.{}", field_name(name)))
+    /// Type and field of a declared function, and its place in an array of them.
+    pub fn function(&self, index: usize) -> (&str, String, Option<usize>) {
+        let function = self.model.functions.get(index);
+        let name = function.map_or("", |function| &function.name.text);
+        let place = function.and_then(|function| function.array).map(|array| array.index);
+        (self.types.get(index).map_or("", String::as_str), format!("self.{}", field_name(name)), place)
     }
 
     /// The value, or 0 where there is none.

@@ -113,7 +113,7 @@ fn reference(model: &Model, runtime: &TokenStream) -> Option<TokenStream> {
 fn function_entry(function: &Function, order: u8, runtime: &TokenStream) -> TokenStream {
     let Function { name, unit, argument_unit, continuity, period, .. } = function;
     let line = quote_spanned!(name.span=> ::core::line!());
-    let name = &name.text;
+    let name = function.label();
     let period = match period {
         Some(period) => quote! { ::core::option::Option::Some(#period) },
         None => quote! { ::core::option::Option::None },

@@ -1,4 +1,4 @@
-//! Sine and cosine of many angles at once, inlined.
+//! Sine and cosine of many angles at once, and the angle of a point, inlined.
 //!
 //! `libm::sincos` takes one angle after the other, by branches on its size. Here |x| ≤ 1e5 rad (128 rad in single precision)
 //! goes without a branch. So the angles of a mechanism, or its lanes, share vector registers. With AVX2 eight lanes take a
@@ -8,6 +8,7 @@
 //! No multiplication is fused with an addition, so that all targets give the same bits. The feature `fma` trades that
 //! for a shorter kernel on targets that have the instruction. The feature `libm` takes the library's functions instead.
 
+mod direction;
 pub(crate) mod double;
 pub(crate) mod single;
 #[cfg(test)]
@@ -15,6 +16,8 @@ mod tests;
 
 use core::ops::Add;
 use core::ops::Mul;
+
+pub(crate) use direction::atan2;
 
 /// Angles that go side by side, in one wide register or two narrow ones.
 const WIDE: usize = if cfg!(target_feature = "avx") { 8 } else { NARROW };

@@ -309,3 +309,57 @@ fn the_bits_are_the_same_on_every_run_target_and_optimization() {
     }
     assert_eq!(hash, 10_527_694_864_454_309_857);
 }
+
+/// Error of a found angle in units of its last place: the point turned back by it, in double-double arithmetic.
+fn units_of_direction(found: f64, y: f64, x: f64) -> f64 {
+    let (sine, cosine) = reference(found);
+    let [y, x] = [y, x].map(|part| Pair(part, 0.0));
+    let negative = |value: Pair| Pair(-value.0, -value.1);
+    let across = y.times(cosine).add(negative(x.times(sine)));
+    let along = x.times(cosine).add(y.times(sine));
+    // The angle that is left is its tangent, to a third of its cube.
+    let unit = (found.abs().next_up() - found.abs()).max(f64::MIN_POSITIVE);
+    (across.0 / along.0).abs() / unit
+}
+
+#[test]
+fn angles_of_points_are_as_exact_as_those_of_the_library() {
+    let mut random = Sequence::new(11);
+    let (mut largest, mut library) = (0.0_f64, 0.0_f64);
+    let mut take = |y: f64, x: f64| {
+        for (y, x) in [(y, x), (-y, x), (y, -x), (-y, -x)] {
+            largest = largest.max(units_of_direction(atan2(y, x), y, x));
+            library = library.max(units_of_direction(libm::atan2(y, x), y, x));
+        }
+    };
+    for _ in 0..40_000 {
+        take(random.number(), random.number());
+        // Next to the borders of all sectors and to their lines.
+        for ratio in [7.0 / 16.0, 11.0 / 16.0, 19.0 / 16.0, 39.0 / 16.0, 0.5, 1.0, 1.5, 1e-9, 1e9] {
+            let x = random.number();
+            take(x * ratio * (1.0 + 1e-3 * random.number().powi(5)), x);
+        }
+    }
+    for size in [1e-250, 1e-100, 1e100, 1e300] {
+        for _ in 0..1000 {
+            take(size * random.number(), size * random.number());
+        }
+    }
+    std::println!("{largest} units of the last place, {library} of the library");
+    assert!(largest <= 1.5 && largest <= library, "{largest}, {library} of the library");
+}
+
+#[test]
+fn angles_of_extreme_points_are_those_of_the_library() {
+    let extremes =
+        [0.0, -0.0, 5e-324, f64::MIN_POSITIVE, 1e-200, 1.0, 1e200, f64::MAX, f64::INFINITY, f64::NAN];
+    for y in extremes.into_iter().flat_map(|y| [y, -y]) {
+        for x in extremes.into_iter().flat_map(|x| [x, -x]) {
+            let (found, known) = (atan2(y, x), libm::atan2(y, x));
+            assert!(
+                found.to_bits() == known.to_bits() || found.is_nan() && known.is_nan(),
+                "{y:e} {x:e}: {found:e}"
+            );
+        }
+    }
+}

@@ -160,7 +160,10 @@ pub fn value(expression: &Expression, scope: &Scope<'_>) -> Result<Value, Gap> {
                 let (b, a) = (pop(&mut stack)?, pop(&mut stack)?);
                 joined(*operator, a, b)?
             }
-            Operation::Call { function, order: 0, arguments } => {
+            Operation::Call { function, indexed: true, .. } => {
+                return Err(Gap(format!("`{function}` of the caller")));
+            }
+            Operation::Call { function, order: 0, arguments, indexed: false } => {
                 let arguments = pop_many(&mut stack, *arguments)?;
                 functions::call(function, arguments)?
             }

@@ -424,7 +424,6 @@ fn residual(equation: &Equation, scope: &Scope<'_>) -> Result<Value, Gap> {
 /// The argument of `rate(…)` where it is all of the left side.
 fn prescribed(equation: &Equation) -> Option<Expression> {
     let (last, argument) = equation.left.code.split_last()?;
-    let is_rate =
-        matches!(&last.operation, Operation::Call { function, order: 0, arguments: 1 } if function == "rate");
+    let is_rate = matches!(&last.operation, Operation::Call { function, order: 0, arguments: 1, indexed: false } if function == "rate");
     is_rate.then(|| Expression { code: argument.to_vec() })
 }

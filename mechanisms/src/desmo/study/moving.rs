@@ -24,8 +24,7 @@ const LONGEST: f64 = 0.016;
 
 /// Both cams, rockers and valve over a turn, without play.
 pub fn kinematic(chain: &Chain) -> Result<Picture, StudyError> {
-    let [opening, shutting] = chain.curves.clone();
-    let mut mechanism: DesmoKinematic<_, _> = chain.design.moved_by(opening, shutting);
+    let mut mechanism: DesmoKinematic<_> = chain.design.moved_by(chain.curves.clone());
     mechanism.speed = TAU / 6.0;
     mechanism.opener_radius = chain.design.opener.radius;
     mechanism.closer_radius = chain.design.closer.radius;

@@ -6,7 +6,7 @@ where
     Lift: Function<f64> + Clone + Copy,
     Wear: Function<f64> + Clone + Copy,
 {
-    let follower = Follower { base: 0.02, ..Follower::new(lift, wear) };
+    let follower = Follower { base: 0.02, ..Follower::new(lift, [wear, wear]) };
     let guess = follower.guess(&follower.parameters());
     let mut motion = Stepper::assemble(follower, guess, 0.0)?;
     motion.advance(0.1)?;

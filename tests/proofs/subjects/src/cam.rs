@@ -1,4 +1,4 @@
-//! A function given at run time, in an assignment and in a block: a spline table among the constants.
+//! Functions given at run time, in an assignment and in a block: an array of spline tables among the constants.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 
@@ -6,26 +6,26 @@ use mbs_runtime::driver::Table;
 use mbs_runtime::{Scalar, mechanism};
 
 mechanism! {
-    /// Plate cam whose flat follower turns a lever, which is curved by the same law.
+    /// Plate cam whose flat follower turns a lever, which is curved by a law of the same kind.
     pub mechanism Cam;
 
     param base: m = 0.03;
     param arm: m = 0.10;
     param omega: rad/s = TAU;
 
-    function lift: m(rad), C2, periodic TAU;
+    function lift: [m; 2](rad), C2, periodic TAU;
 
     coord theta: rad;
     coord y: m;
     coord psi: rad = 0.3;
 
     drive cam: theta == omega*t;
-    constraint face { y == base + lift(theta); }
-    constraint lever { arm*sin(psi) + 0.1*lift(psi) == y; }
+    constraint face { y == base + lift[0](theta); }
+    constraint lever { arm*sin(psi) + 0.1*lift[1](psi) == y; }
     branch upper: cos(psi) > 0;
 
-    out touch: [m; 2] = [lift.d1(theta), y];
-    out curvature: m = lift.d2(theta) + lift(base/1m);
+    out touch: [m; 2] = [lift[0].d1(theta), y];
+    out curvature: m = sum(i in 0..2: lift[i].d2(theta)) + lift[0](base/1m);
 }
 
 /// Height of the law (m).
@@ -43,7 +43,7 @@ const PIECES: [[f64; 4]; 4] = [
 ];
 const LIFT: Table<'static, 4> = Table::periodic(&KNOTS, &PIECES, TAU);
 
-/// The cam with its table.
+/// The cam with its tables.
 pub fn cam<T: Scalar>() -> Cam<Table<'static, 4>, T> {
-    Cam::new(LIFT)
+    Cam::new([LIFT; 2])
 }

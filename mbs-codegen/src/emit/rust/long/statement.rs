@@ -188,4 +188,8 @@ impl Naming for Marked<'_> {
         self.open.defines.push(id);
         DEFINED.to_string()
     }
+
+    fn place(&mut self, index: usize) -> Option<String> {
+        Some(self.open.push(Operand::Place(index)))
+    }
 }

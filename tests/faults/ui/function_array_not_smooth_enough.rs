@@ -1,0 +1,13 @@
+#![deny(warnings)]
+use mbs_runtime::mechanism;
+
+mechanism! {
+    mechanism M;
+    function lift: [m; 3](rad), C1;
+    coord x: rad = 0;
+    coord y: [m; 3];
+    drive d: x == t/1s;
+    constraint c { for i in 0..3 { y[i] == lift[i](x); } }
+}
+
+fn main() {}
