@@ -75,10 +75,13 @@ impl Extrapolated {
         counts: &mut Counts,
         mut see: impl FnMut(&Instant<R, N, M, S::States>, R),
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        if let Ok(next) = resolved(model, (from, h), LARGEST_CORRECTION, counts)? {
-            see(from, h);
-            return Ok(next);
-        }
+        let mut unresolved = match resolved(model, (from, h), LARGEST_CORRECTION, counts)? {
+            Ok(next) => {
+                see(from, h);
+                return Ok(next);
+            }
+            Err(failure) => failure,
+        };
         let (half, until) = (R::constant(0.5), from.t + h);
         let (mut at, mut part, mut halvings) = (*from, half * h, 1);
         for _ in 0..MOST_PARTS {
@@ -98,11 +101,11 @@ impl Extrapolated {
                     };
                 }
                 Err(failure) if halvings == MOST_HALVINGS => return Err(failure),
-                Err(_) => (part, halvings) = (half * part, halvings + 1),
+                Err(failure) => (unresolved, part, halvings) = (failure, half * part, halvings + 1),
             }
         }
-        let (part, allowed) = (1.0, LARGEST_CORRECTION);
-        Err(FailureKind::StepUnresolved { step: h.to_f64(), part, allowed }.at(at.t.to_f64()))
+        // The last part that was too long tells by how much.
+        Err(unresolved)
     }
 }
 
