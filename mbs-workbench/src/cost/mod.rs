@@ -3,6 +3,8 @@
 pub mod advice;
 #[cfg(test)]
 mod counts_tests;
+#[cfg(test)]
+mod doubles_tests;
 pub mod errors;
 pub mod kernels;
 pub mod kinematics;
