@@ -23,6 +23,18 @@ pub enum Leg {
     Order5,
 }
 
+impl Leg {
+    /// Its kind in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Leg::Extrapolated => "extrapolated",
+            Leg::Collocated => "collocated",
+            Leg::Order8 => "explicit (order 8)",
+            Leg::Order5 => "explicit (order 5)",
+        }
+    }
+}
+
 /// The state at an instant with what settings are compared in.
 #[derive(Clone, Debug)]
 pub struct Shot {
@@ -245,14 +257,19 @@ pub fn reference(
     tolerance: f64,
     budget: Duration,
 ) -> Reference {
-    let mut method: Box<dyn StepMethod> = match leg {
-        Leg::Collocated => Box::new(Collocated::default()),
-        _ => Box::new(Extrapolated),
-    };
     let exact = |values: &[f64]| values.iter().map(|value| D::constant(*value)).collect::<Vec<D>>();
     let first = times.first().copied().unwrap_or(0.0);
     let span = times.last().copied().unwrap_or(0.0) - first;
     let mut found = Reference { shots: Vec::new(), tolerance, steps: 0, contacts: Vec::new(), stuck: None };
+    let mut method: Box<dyn StepMethod> = match leg {
+        Leg::Extrapolated => Box::new(Extrapolated),
+        Leg::Collocated => Box::new(Collocated::default()),
+        // Their steps are those of the runtime: `of_one_kind`.
+        Leg::Order8 | Leg::Order5 => {
+            found.stuck = Some(Stuck::Refused(format!("{} steps are the runtime's", leg.name())));
+            return found;
+        }
+    };
     let Some(mut course) = Course::begin(equations, exact(start.0), exact(start.1), first) else {
         found.stuck = Some(Stuck::SmallSteps);
         return found;

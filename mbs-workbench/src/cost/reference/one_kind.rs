@@ -16,7 +16,10 @@ const TOLERANCES: [f64; 4] = [1e-9, 1e-11, 1e-13, 1e-15];
 
 /// Order by which the time of a run grows with its tolerance, at least.
 fn order(leg: Leg) -> f64 {
-    if leg == Leg::Order5 { 5.0 } else { 8.0 }
+    match leg {
+        Leg::Order5 => 5.0,
+        Leg::Order8 | Leg::Extrapolated | Leg::Collocated => 8.0,
+    }
 }
 
 /// Formulations beside projection, the preferred one first.
@@ -28,7 +31,9 @@ pub fn method(of: &OneKind, leg: Leg) -> MotionMethod {
     let other = OTHERS.into_iter().map(by).find(|method| of.runs.admits(*method));
     match leg {
         Leg::Order5 => other.unwrap_or(by(FormulationName::Projection)),
-        _ => MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8),
+        Leg::Order8 | Leg::Extrapolated | Leg::Collocated => {
+            MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8)
+        }
     }
 }
 
