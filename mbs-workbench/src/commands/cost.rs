@@ -356,7 +356,7 @@ pub fn study(
             for (leg, reference) in &found.references {
                 let events = match reference.contacts.len() {
                     0 => String::new(),
-                    events => format!(", {events} contacts"),
+                    events => format!(", {events} changes of contacts and events"),
                 };
                 let words = match &reference.stuck {
                     None => {

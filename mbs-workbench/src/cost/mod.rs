@@ -1,6 +1,7 @@
 //! Cost of accuracy: each setting of the solvers by its true error and its time.
 
 pub mod advice;
+pub mod continued;
 #[cfg(test)]
 mod counts_tests;
 #[cfg(test)]

@@ -18,7 +18,8 @@ pub struct Errors {
     pub second: f64,
     /// Of the multipliers that are unique, over the largest of the motion; NaN where none is.
     pub multiplier: f64,
-    /// Largest error (s) of the times at which contacts close or open; infinite where a contact is missed, NaN where there are none.
+    /// Largest error (s) of the times at which contacts close or open and events of the text begin or end; infinite where one is missed,
+    /// NaN where there are none.
     pub contact: f64,
     /// Of the energy, over the largest kinetic energy of the motion; 0 where there are no masses.
     pub energy: f64,

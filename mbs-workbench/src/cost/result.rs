@@ -105,7 +105,7 @@ struct PagePoint {
     rate: f64,
     second: f64,
     multiplier: f64,
-    /// Error (s) of the times of contacts, in words.
+    /// Error (s) of the times of contacts and events, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     contact: Option<String>,
     energy: f64,
@@ -138,7 +138,7 @@ impl PagePoint {
             rate: errors.rate,
             second: errors.second,
             multiplier: errors.multiplier,
-            contact: of_contacts(errors.contact),
+            contact: event_times(errors.contact),
             energy: errors.energy,
             violation: errors.violation,
             expected: None,
@@ -161,8 +161,8 @@ impl PagePoint {
     }
 }
 
-/// The error (s) of the times of contacts in words; none where there are none.
-fn of_contacts(error: f64) -> Option<String> {
+/// The error (s) of the times of contacts and events in words; none where there are none.
+pub fn event_times(error: f64) -> Option<String> {
     match error {
         error if error.is_nan() => None,
         error if error.is_finite() => Some(format!("{} s", two_digits(error))),
@@ -338,7 +338,7 @@ impl CostResult {
     /// One line a point.
     pub fn csv(&self) -> String {
         let mut text = format!(
-            "numbers,curve,setting,result,error,median error,velocity error,{} error,multiplier error,contact error (s),energy error,violation,expected error,expected error is trusted,time ({}),evaluations,corrections,steps,on the front\n",
+            "numbers,curve,setting,result,error,median error,velocity error,{} error,multiplier error,event time error (s),energy error,violation,expected error,expected error is trusted,time ({}),evaluations,corrections,steps,on the front\n",
             self.second,
             self.unit()
         );

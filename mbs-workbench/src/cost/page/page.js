@@ -145,7 +145,7 @@ const figures = (point) => [
   ["error", short(point.error)], ["median", short(point.median)], ...(point.rate === null ? [] : [["velocity", short(point.rate)]]),
   ...(point.second === null ? [] : [[DATA.second, short(point.second)]]),
   ...(point.multiplier === null ? [] : [["multipliers", short(point.multiplier)]]),
-  ...(point.contact === undefined ? [] : [["times of contacts", point.contact]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
+  ...(point.contact === undefined ? [] : [["event times", point.contact]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
   ...(point.violation ? [["violation", short(point.violation)]] : []),
   ...(point.expected !== undefined ? [["expected", short(point.expected) + (point.doubted ? ", untrusted" : "")]] : []),
   ...(point.perturbed !== undefined ? [["other parameters", short(point.perturbed)]] : []),
@@ -195,7 +195,7 @@ const table = () => {
   const rows = trusted.filter((entry) => entry.point.front).sort((a, b) => a.point.time - b.point.time);
   const columns = [
     ["error", (point) => short(point.error)], ["median", (point) => short(point.median)], ["velocity", (point) => short(point.rate)],
-    [DATA.second, (point) => short(point.second)], ["multipliers", (point) => short(point.multiplier)], ["contacts", (point) => point.contact ?? ""],
+    [DATA.second, (point) => short(point.second)], ["multipliers", (point) => short(point.multiplier)], ["event times", (point) => point.contact ?? ""],
     ["energy", (point) => (point.energy ? short(point.energy) : "")], ["violation", (point) => (point.violation ? short(point.violation) : "")],
   ].filter(([, of]) => rows.some(({ point }) => of(point) !== ""));
   ["setting", ...columns.map(([name]) => name), DATA.unit, "evaluations", "steps"].forEach((name) => element("th", name, head));

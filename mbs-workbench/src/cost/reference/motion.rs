@@ -48,14 +48,24 @@ pub struct Shot {
     pub observed: Observed<D>,
 }
 
-/// A contact that closes or opens.
+/// The shot of a motion with these numbers alone.
+#[cfg(test)]
+pub fn shot_of(t: f64, q: Vec<f64>, qd: Vec<f64>, qdd: Vec<f64>) -> Shot {
+    let exact = |values: Vec<f64>| values.into_iter().map(D::constant).collect::<Vec<D>>();
+    let zero = D::constant(0.0);
+    let observed = Observed { reaction: Vec::new(), energy: zero, kinetic: zero, outputs: Vec::new() };
+    let at = Moving { t: D::constant(t), q: exact(q), qd: exact(qd), states: Vec::new() };
+    Shot { at, qdd: exact(qdd), lambda: Vec::new(), observed }
+}
+
+/// A contact that closes or opens, or an event of the text that begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Time (s).
     pub t: f64,
-    /// Its index among the contacts of the text.
+    /// Its index among the contacts of the text, events behind them.
     pub index: usize,
-    /// `true` where it closes.
+    /// `true` where a contact closes.
     pub closes: bool,
     /// `true` where velocities jump: a rigid contact.
     pub jumps: bool,
@@ -70,7 +80,7 @@ pub struct Reference {
     pub tolerance: f64,
     /// Steps taken.
     pub steps: u64,
-    /// Contacts that closed or opened, in the order of time.
+    /// Contacts that closed or opened, and events that began or ended, in the order of time.
     pub contacts: Vec<Contact>,
     /// Reason why it ended early.
     pub stuck: Option<Stuck>,

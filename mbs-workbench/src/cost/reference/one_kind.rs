@@ -77,10 +77,12 @@ fn run(of: &OneKind, leg: Leg, times: &[f64], tolerance: f64) -> Reference {
     let contacts = ran.and_then(|effort| Ok((effort, of.runs.contacts(method, resolution, times)?)));
     match contacts {
         Ok((effort, found)) => {
-            let closings = found.iter().enumerate().flat_map(|(index, times)| {
-                times.iter().map(move |t| Contact { t: *t, index, closes: true, jumps: of.soft <= index })
+            let [soft, rigid] = of.contacts;
+            let changes = found.iter().enumerate().flat_map(|(index, times)| {
+                let (closes, jumps) = (index < soft + rigid, (soft..soft + rigid).contains(&index));
+                times.iter().map(move |t| Contact { t: *t, index, closes, jumps })
             });
-            let mut contacts: Vec<Contact> = closings.collect();
+            let mut contacts: Vec<Contact> = changes.collect();
             contacts.sort_by(|a, b| a.t.total_cmp(&b.t));
             Reference { shots, tolerance, steps: effort.steps, contacts, stuck: None }
         }
