@@ -337,11 +337,7 @@ pub fn study(
                     fact(&name, words);
                 }
             }
-            fact(
-                "reference",
-                "positions closed to 29 digits in double-double numbers; rates by differences of positions"
-                    .to_string(),
-            );
+            fact("reference", found.reference());
             fact(
                 "width of rates",
                 format!("{}, by the rows against differences of positions", two_digits(found.width)),

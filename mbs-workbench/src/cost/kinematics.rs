@@ -2,6 +2,7 @@
 
 use mbs_runtime::Scalar;
 
+use crate::cost::advice::two_digits;
 use crate::cost::moved::{NoReference, WIDTHS};
 use crate::cost::points::{Errors, Expected, Outcome, Point, Verdict, WRONG, judge_by_order};
 use crate::cost::reference::linear::{Matrix, worse};
@@ -64,6 +65,19 @@ pub struct DrivenStudy {
     pub motion: Vec<(f64, [Vec<D>; 2])>,
     /// Reference metric of the coordinates: N.
     pub scales: Vec<f64>,
+}
+
+impl DrivenStudy {
+    /// The reference in words.
+    pub fn reference(&self) -> String {
+        let closed = match self.width_of_positions {
+            None => "29 digits in double-double numbers".to_string(),
+            Some(width) => {
+                format!("the rounding of functions in `f64`, {} of the largest coordinate", two_digits(width))
+            }
+        };
+        format!("positions closed to {closed}; rates by differences of positions")
+    }
 }
 
 /// Exact positions and rates at an instant.
