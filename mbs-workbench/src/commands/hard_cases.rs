@@ -94,7 +94,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
             &Study::HARD_CASES,
             &forge,
             target.card(),
-            (&super::cost::type_of(instance.equations()), source, &[]),
+            (&instance.equations().path(), source, &[]),
         )?
     } else {
         hard_case_list::blueprint(arguments)?

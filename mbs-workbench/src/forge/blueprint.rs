@@ -45,8 +45,17 @@ pub struct Study {
     program: &'static str,
     /// `true` where the program takes the functions of the caller.
     with_laws: bool,
-    /// `true` where functions of the caller that exist in `f64` alone are taken in all numbers.
-    in_doubles: bool,
+    /// Where functions of the caller that exist in `f64` alone are taken in all numbers: the place that the type's name is taken from.
+    in_doubles: Option<NameFrom>,
+}
+
+/// Place that names the type of a mechanism whose constructor is a path of its card.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NameFrom {
+    /// Module that has the text.
+    Text,
+    /// Module of the constructor, which may name a type of a private module anew.
+    Constructor,
 }
 
 impl Study {
@@ -57,7 +66,7 @@ impl Study {
         make: "comparable",
         program: "cost_program",
         with_laws: true,
-        in_doubles: false,
+        in_doubles: None,
     };
     /// That of `mbs hard-cases`.
     pub const HARD_CASES: Study = Study {
@@ -66,12 +75,22 @@ impl Study {
         make: "variable",
         program: "hard_cases_program",
         with_laws: false,
-        in_doubles: false,
+        in_doubles: None,
     };
 
     /// The study for functions of the caller that exist in `f64` alone.
-    pub const fn in_doubles(self) -> Study {
-        Study { in_doubles: true, ..self }
+    pub const fn in_doubles(self, name_from: NameFrom) -> Study {
+        Study { in_doubles: Some(name_from), ..self }
+    }
+
+    /// The import of the type `own`, a path, beside the names that a card's `constructor` is written with.
+    fn import(&self, (constructor, own): (&str, &str)) -> String {
+        let path = match self.in_doubles {
+            None => None,
+            Some(NameFrom::Text) => Some(format!("::{own}")).filter(|_| own.contains("::")),
+            Some(NameFrom::Constructor) => module_of(constructor).map(|module| format!("{module}::*")),
+        };
+        path.map_or_else(String::new, |path| format!("#[allow(unused_imports)]\nuse {path};\n"))
     }
 
     /// The constants that make the mechanism of `constructor`, of type `own`, and its `functions` of the caller.
@@ -82,7 +101,11 @@ impl Study {
         let name = |function: &FunctionEntry| function.name.split('[').next().unwrap_or_default();
         let mut names: Vec<&str> = functions.iter().map(name).collect();
         names.dedup();
-        let names = if self.in_doubles { format!(", {own}, [{}]", names.join(", ")) } else { String::new() };
+        let own = own.rsplit("::").next().unwrap_or_default();
+        let names = match self.in_doubles {
+            Some(_) => format!(", {own}, [{}]", names.join(", ")),
+            None => String::new(),
+        };
         format!(
             "pub const STUDIED: fn(&[(usize, f64)]) -> ::mbs_workbench::{kind} = ::mbs_workbench::{make}!({constructor}{names}); {laws}"
         )
@@ -227,8 +250,8 @@ impl Blueprint {
         })
     }
 
-    /// A study of the mechanism of `card` with this type, text and these functions of the caller. It is made from the text alone if the
-    /// constructor is that of the text's defaults; else on top of the library, which is built anew for it.
+    /// A study of the mechanism of `card` with this type, a path, text and these functions of the caller. It is made from the text alone if
+    /// the constructor is that of the text's defaults; else on top of the library, which is built anew for it.
     ///
     /// # Errors
     /// As [`of_card`](Self::of_card).
@@ -267,7 +290,8 @@ impl Blueprint {
         }
         Self::of_card(forge, card, &name, |constructor| {
             let (items, call) = (items(constructor), study.call(""));
-            format!("{HEAD}\n\n{items}\nfn main() -> ExitCode {{\n    {call}\n}}\n")
+            let import = study.import((constructor, own));
+            format!("{import}{HEAD}\n\n{items}\nfn main() -> ExitCode {{\n    {call}\n}}\n")
         })
     }
 
@@ -320,6 +344,22 @@ impl Blueprint {
             self.manifest
         )
     }
+}
+
+/// The module of the function or type that the expression `constructor` calls; none where it names no module.
+fn module_of(constructor: &str) -> Option<String> {
+    let called = match syn::parse_str::<syn::Expr>(constructor).ok()? {
+        syn::Expr::Call(call) => *call.func,
+        named => named,
+    };
+    let syn::Expr::Path(path) = called else { return None };
+    let names: Vec<String> = path.path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+    // A type is no module: `my_crate::Wiper::new`.
+    let is_module = |name: &&String| !name.starts_with(char::is_uppercase);
+    let modules: Vec<&str> =
+        names.iter().take(names.len().saturating_sub(1)).take_while(is_module).map(String::as_str).collect();
+    let root = if path.path.leading_colon.is_some() { "::" } else { "" };
+    (!modules.is_empty()).then(|| root.to_string() + &modules.join("::"))
 }
 
 /// The functions of the caller that have two derivatives, by their names: an item of Rust.

@@ -14,7 +14,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-pub use self::blueprint::{Blueprint, Study};
+pub use self::blueprint::{Blueprint, NameFrom, Study};
 use crate::hash::hash;
 use crate::target_directory::{known_target_directory, target_directory};
 

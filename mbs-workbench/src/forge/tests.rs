@@ -293,8 +293,38 @@ fn a_study_takes_each_function_of_an_array_and_makes_the_mechanism_of_the_arrays
     for law in ["(\"lift[0]\", ", "(\"lift[1]\", ", "(&mechanism.lift[0], x)", "(&mechanism.lift[1], x)"] {
         assert!(main.contains(law), "{law}: {main}");
     }
-    let main = study(&Study::COST.in_doubles());
+    let main = study(&Study::COST.in_doubles(NameFrom::Text));
     assert!(main.contains("comparable!(Valves::default(), Valves, [lift, stroke])"), "{main}");
     // That macro takes arrays.
     assert_eq!(valves::doubles(), [vec![], vec!["lift"]]);
+}
+
+#[test]
+fn a_study_of_a_constructor_in_a_library_imports_the_type_that_takes_other_functions() {
+    let forge = Forge { cargo: "cargo".into(), ..forge("paths", BUILD) };
+    let instance = crate::card!(valves::valves()).equations();
+    let own = instance.path();
+    assert_eq!(own, "mbs_workbench::forge::tests::valves::Valves");
+    let main = |constructor: &'static str, name_from| {
+        // A module that is in no library, so names of the constructor alone tell the library.
+        let module = if constructor.starts_with("mbs_workbench") { "elsewhere" } else { module_path!() };
+        let card = Card { constructor, module, ..crate::card!(valves::valves()) };
+        let text = (own.as_str(), instance.source(), instance.functions());
+        Blueprint::study_of_card(&Study::COST.in_doubles(name_from), &forge, &card, text)
+            .expect("a library")
+            .main
+    };
+    let path = "mbs_workbench::forge::tests::valves::valves()";
+    let text = main(path, NameFrom::Text);
+    assert!(text.contains("use ::mbs_workbench::forge::tests::valves::Valves;\n"), "{text}");
+    assert!(text.contains(&format!("comparable!({path}, Valves, [lift, stroke])")), "{text}");
+    // The constructor's module, from the crate's root or from the module of the card; a type is no module.
+    let import = |constructor, expected: &str| {
+        let text = main(constructor, NameFrom::Constructor);
+        assert!(text.contains(&format!("\nuse {expected};\n")), "{text}");
+    };
+    import(path, "mbs_workbench::forge::tests::valves::*");
+    import("valves::valves()", "valves::*");
+    import("mbs_workbench::valves::Valves::new(LIFT)", "mbs_workbench::valves::*");
+    import("::mbs_workbench::valves()", "::mbs_workbench::*");
 }
