@@ -33,6 +33,8 @@ impl Elaborator<'_> {
     }
 
     fn sum(&mut self, function: Binary, a: &Value, b: &Value, span: Span) -> Result<Value, Fault> {
+        // A 0, as of a `sum` without terms, is one of any shape.
+        let (a, b) = (&a.spread_zero(b), &b.spread_zero(a));
         if a.shape != b.shape {
             return Err(self.fault(
                 b.span,

@@ -7,9 +7,8 @@ use super::expression::{Id, Node};
 use super::resolve::behind_loop;
 use super::resolver::Resolver;
 use super::unit_faults::Place;
-use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Fault, Quantity, Reach, Scalar, Value};
+use super::value::{Fault, Reach, Scalar};
 use super::written::operands;
 use super::{Branch, ConstraintRow};
 use crate::symbolic::Binary;
@@ -57,8 +56,8 @@ impl Resolver<'_> {
         })?;
         let span = equation.span;
         // `x == 0` holds for every component of a vector x.
-        let right = spread_zero(right, &left);
-        let left = spread_zero(left, &right);
+        let right = right.spread_zero(&left);
+        let left = left.spread_zero(&right);
         let residuals = self.elaborate(Reach::Position, |work| {
             let (of_left, of_right) = (&equation.left.code, &equation.right.code);
             work.beside_angle((&left, of_left), of_right)?;
@@ -135,15 +134,5 @@ fn component_of(side: &[Instruction], component: usize) -> &[Instruction] {
                 .unwrap_or(side)
         }
         _ => side,
-    }
-}
-
-/// A literal 0 in the shape of the other side.
-fn spread_zero(value: Value, other: &Value) -> Value {
-    match value.items.as_slice() {
-        [zero] if value.shape.is_empty() && zero.quantity == Quantity::Any && zero.bare == Bare::Zero => {
-            Value { shape: other.shape.clone(), items: vec![*zero; other.items.len()], span: value.span }
-        }
-        _ => value,
     }
 }

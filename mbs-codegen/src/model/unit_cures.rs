@@ -53,11 +53,14 @@ pub fn explain(statements: &[Statement], names: &mut Names, diagnostics: &mut Di
     }
     let open = faults.iter().zip(&explained).filter(|(fault, explained)| named(fault) && !**explained);
     for (fault, _) in open {
-        let cure = work.cycle(fault).or_else(|| work.time(fault)).or_else(|| work.literal(fault));
-        let cure = cure.or_else(|| work.factor(fault));
+        let of_number = |fault: &UnitFault| work.literal(fault).or_else(|| work.factor(fault));
+        let cure = work.cycle(fault).or_else(|| work.time(fault)).or_else(|| of_number(fault));
+        let mut seen = None;
+        let cure = cure.or_else(|| of_number(seen.insert(fault.seen_from_the_other_side()?)));
+        let told = seen.as_ref().filter(|_| cure.is_some()).unwrap_or(fault);
         let (span, help) = cure.unwrap_or_else(|| (work.span(fault), work.declarations(fault)));
         if diagnostics.withdraw(fault.span, &fault.message) {
-            diagnostics.report(span, work.message(fault), help);
+            diagnostics.report(span, work.message(told), help);
         }
     }
 }

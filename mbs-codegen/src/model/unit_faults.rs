@@ -44,6 +44,18 @@ pub struct UnitFault {
 }
 
 impl UnitFault {
+    /// The same fault seen from the other term or side: its bare number may be what lacks a unit.
+    pub fn seen_from_the_other_side(&self) -> Option<UnitFault> {
+        let has_two = matches!(self.place, Place::Terms | Place::Sides) && !self.other.is_empty();
+        has_two.then(|| UnitFault {
+            found: self.wanted,
+            wanted: self.found,
+            operand: self.other.clone(),
+            other: self.operand.clone(),
+            ..self.clone()
+        })
+    }
+
     /// `true` for the argument of a function of angles.
     pub fn place_is_of_angles(&self) -> bool {
         matches!(self.place, Place::Argument(_)) && self.wanted.is_angle

@@ -62,6 +62,8 @@ impl Bare {
             (Binary::Atan2, _) => a.with(b).transcendental(Bare::Angle),
             (Binary::Power, Bare::Wholly | Bare::Zero) => a,
             (Binary::Power, _) => Bare::Not,
+            // A ratio of angles, as of two speeds of rotation, is a number.
+            (Binary::Divide, Bare::Angle) if a == Bare::Angle => Bare::Not,
             _ => a.with(b),
         }
     }

@@ -51,6 +51,16 @@ impl Value {
         Value { shape: Vec::new(), items: vec![scalar], span }
     }
 
+    /// A scalar 0 that fits any unit in the shape of another value; anything else as it is.
+    pub fn spread_zero(&self, other: &Value) -> Value {
+        match self.items.as_slice() {
+            [zero] if self.shape.is_empty() && zero.quantity == Quantity::Any => {
+                Value { shape: other.shape.clone(), items: vec![*zero; other.items.len()], span: self.span }
+            }
+            _ => self.clone(),
+        }
+    }
+
     /// Description in a message.
     pub fn describe(&self) -> String {
         match self.shape.as_slice() {

@@ -81,6 +81,10 @@ fn unchosen(scene: &Scene, structure: &Structure, warnings: &mut Diagnostics) {
             .map(|coordinate| format!("`{}`", coordinate.name))
             .collect();
         let group = row.name.split('.').next().unwrap_or(&row.name);
+        // The row e·e = 1 is named after its body; e and −e are one orientation.
+        if model.dynamics.iter().flat_map(|dynamics| &dynamics.bodies).any(|body| body.name == group) {
+            continue;
+        }
         warnings.report(
             row.span,
             format!("`{group}` has two positions of {}, and no branch chooses one", names.join(", ")),

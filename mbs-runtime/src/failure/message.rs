@@ -260,8 +260,9 @@ impl fmt::Display for Failure {
             }
             FailureKind::SetValuedForce { row } => write!(
                 f,
-                "`{}` (line {}) is a friction that sticks or a rigid contact, and has no slopes at rest: take an explicit method, as \
-                 `DormandPrince8`, or a smooth law: `speed` in place of `sticks`, a contact with `stiffness`",
+                "`{}` (line {}) is a friction that sticks or a rigid contact, and has no slopes at rest, which rests, small motions and \
+                 implicit methods need: follow the motion by an explicit method, as `DormandPrince8`, or take a smooth law, `speed` in place of \
+                 `sticks`, a contact with `stiffness`",
                 row.name, row.line
             ),
             FailureKind::EventOfMotion { event } => write!(

@@ -16,6 +16,7 @@ mod d3_spikes;
 mod d4_zero_start;
 mod declared;
 mod declared_in_loops;
+mod pulses;
 mod runs;
 mod t7_contact_damping;
 mod texts;

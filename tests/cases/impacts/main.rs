@@ -5,6 +5,7 @@ mod blocks;
 mod coordinates;
 mod cradle;
 mod disk;
+mod hanging;
 mod impulses;
 mod random;
 mod rod;

@@ -6,4 +6,5 @@ mod d20_rates_in_lets;
 mod k3_powers_of_numbers_with_units;
 mod k8_names_of_rust;
 mod picture;
+mod sums_and_ratios;
 mod t6_threshold_of_dependent_rows;

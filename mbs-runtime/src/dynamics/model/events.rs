@@ -31,7 +31,34 @@ impl<R: Real> Condition<R> {
 
     /// Positive as long as it does not hold, by more than rounding.
     fn margin(&self) -> R {
-        motion::NO_VALUE.of::<R>() * (self.larger.abs() + self.smaller.abs()) - self.excess()
+        self.rounding() - self.excess()
+    }
+
+    fn rounding(&self) -> R {
+        motion::NO_VALUE.of::<R>() * (self.larger.abs() + self.smaller.abs())
+    }
+}
+
+impl<R: Real> Event<R> {
+    /// Positive where it changes: one that rests begins where its condition holds and its end does not.
+    fn excess(&self, rests: bool) -> Option<R> {
+        let zero = R::constant(0.0);
+        match self.ends {
+            ends if !rests => ends.map(|ends| ends.excess()),
+            Some(ends) if zero < ends.excess() => Some(self.begins.excess().min(zero)),
+            _ => Some(self.begins.excess()),
+        }
+    }
+
+    /// Positive as long as it does not change, by more than rounding.
+    fn margin(&self, rests: bool) -> Option<R> {
+        match self.ends {
+            ends if !rests => ends.map(|ends| ends.margin()),
+            Some(ends) if ends.excess().is_finite() => {
+                Some(self.begins.margin().max(ends.excess() + ends.rounding()))
+            }
+            _ => Some(self.begins.margin()),
+        }
     }
 }
 
@@ -63,8 +90,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         self.watch(state, solved, |events, _| {
             let events = events.iter().zip(S::remembered(self.parameters)).skip(first);
             for (value, (event, holds)) in values.iter_mut().zip(events) {
-                let next = if *holds == zero { Some(&event.begins) } else { event.ends.as_ref() };
-                *value = next.map_or(one, Condition::margin);
+                *value = event.margin(*holds == zero).unwrap_or(one);
             }
         });
     }
@@ -141,8 +167,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         self.watch((t, y), Some(solved), |events, latched| {
             for (index, (event, holds)) in events.iter().zip(S::remembered(self.parameters)).enumerate() {
                 let rests = *holds == zero;
-                let condition = if rests { Some(event.begins) } else { event.ends };
-                let Some(excess) = condition.map(|condition| condition.excess()) else { continue };
+                let Some(excess) = event.excess(rests) else { continue };
                 if !excess.is_finite() {
                     undefined = Some(index);
                     return;

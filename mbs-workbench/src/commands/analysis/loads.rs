@@ -56,10 +56,22 @@ fn together(prefix: &str, curves: &[LoadCurve]) -> [String; 2] {
     [format!("{prefix}{name}, all {}", curves.len()), format!("{} {unit}{shared}", range(&values, 4))]
 }
 
-/// Least and largest value, of a single one the value.
+/// Largest value (m, N and so on) from which four decimals tell it.
+const FOUR_DECIMALS: f64 = 0.1;
+
+/// Least of the largest values that are printed without an exponent.
+const LEAST_DECIMAL: f64 = 1e-6;
+
+/// Least and largest value, of a single one the value. Small values have decimals in addition, so that the largest one has four digits.
 fn range(values: &[f64], decimals: usize) -> String {
-    let digits = if values.len() == 1 { 6 } else { decimals };
-    let shown = |value: f64| format!("{:.digits$}", signless(value, digits));
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let is_small = 0.0 < largest && largest < FOUR_DECIMALS;
+    let more = if is_small { (-largest.log10()).floor() as usize } else { 0 };
+    let digits = more + if values.len() == 1 { 6 } else { decimals };
+    let shown = |value: f64| match is_small && largest < LEAST_DECIMAL {
+        true => significant(value, 5),
+        false => format!("{:.digits$}", signless(value, digits)),
+    };
     let least = shown(values.iter().copied().fold(f64::INFINITY, f64::min));
     let most = shown(values.iter().copied().fold(f64::NEG_INFINITY, f64::max));
     if values.len() == 1 { least } else { format!("{least} to {most}") }
@@ -70,16 +82,25 @@ pub(super) fn energies(motion: &Motion) -> Vec<[String; 2]> {
     let Some(forces) = &motion.dynamics else { return Vec::new() };
     let active: Vec<&PowerCurve> = forces.supplies.iter().filter(|supply| !supply.is_idle()).collect();
     let error = open(forces);
+    let largest =
+        |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |most, value| most.max(value.abs()));
+    let energies = forces.kinetic.iter().chain(&forces.work).copied();
+    let most_work = largest(&mut energies.chain(active.iter().map(|supply| supply.total())));
+    let span = motion.time.last().zip(motion.time.first()).map_or(0.0, |(last, first)| last - first);
+    let mean = if 0.0 < span { most_work / span } else { 0.0 };
+    let most_power = largest(&mut active.iter().flat_map(|supply| supply.power.iter().copied())).max(mean);
     let line = |supply: &&PowerCurve| {
         let (least, most) = supply
             .power
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), power| (a.min(*power), b.max(*power)));
+        let [least, most] = [least, most].map(|power| unrounded(power, most_power));
+        let total = unrounded(supply.total(), most_work);
         let powers = match (least, most) {
-            (0.0, 0.0) if supply.total() != 0.0 => "power between the instants shown alone".into(),
+            (0.0, 0.0) if total != 0.0 => "power between the instants shown alone".into(),
             _ => format!("power {} to {} W", significant(least, 5), significant(most, 5)),
         };
-        [format!("work of {}", supply.title()), format!("{} J, {powers}", settled(supply.total(), error))]
+        [format!("work of {}", supply.title()), format!("{} J, {powers}", settled(total, error))]
     };
     let mut lines: Vec<[String; 2]> = active.iter().take(MOST_LINES).map(line).collect();
     if let Some(left) = active.len().checked_sub(MOST_LINES).filter(|left| *left > 0) {
@@ -87,9 +108,16 @@ pub(super) fn energies(motion: &Motion) -> Vec<[String; 2]> {
         lines.push([format!("work of {left} more"), format!("{} J", settled(rest, error))]);
     }
     if !active.is_empty() {
-        lines.push(balance(forces, &active));
+        lines.push(balance(forces, &active, most_work));
     }
     lines
+}
+
+/// A value, or 0 where it is rounding beside the largest of its kind.
+fn unrounded(value: f64, largest: f64) -> f64 {
+    /// Part of the largest value, as on the page.
+    const ROUNDING: f64 = 1e-12;
+    if value.abs() <= ROUNDING * largest { 0.0 } else { value }
 }
 
 /// Error of the works at the last instant (J). It is the larger of two differences: their sum less the work integrated for all
@@ -112,8 +140,8 @@ fn settled(work: f64, error: f64) -> String {
 /// Energy that impacts take, over the energies of a motion, from which it is no rounding.
 const LEAST_JUMP: f64 = 1e-9;
 
-/// Energy balance: the change of the energy and the works that add up to it, as name and value.
-fn balance(forces: &Forces, active: &[&PowerCurve]) -> [String; 2] {
+/// Energy balance: the change of the energy and the works that add up to it, as name and value. `most_work`: the largest energy (J).
+fn balance(forces: &Forces, active: &[&PowerCurve], most_work: f64) -> [String; 2] {
     let at = |values: &[f64], last: bool| {
         let value = if last { values.last() } else { values.first() };
         value.copied().unwrap_or(0.0)
@@ -131,7 +159,7 @@ fn balance(forces: &Forces, active: &[&PowerCurve]) -> [String; 2] {
     ] {
         let of = || active.iter().filter(|supply| supply.by == by);
         if of().next().is_some() {
-            let work: f64 = of().map(|supply| supply.total()).sum();
+            let work = unrounded(of().map(|supply| supply.total()).sum(), most_work);
             sum += work;
             parts.push(format!("{name} {} J", settled(work, error)));
         }
@@ -175,7 +203,27 @@ fn surplus(forces: &Forces) -> Option<[String; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::settled;
+    use super::{range, settled, unrounded};
+
+    #[test]
+    fn ranges_have_digits_of_their_largest_value() {
+        assert_eq!(range(&[0.0, 4.905], 4), "0.0000 to 4.9050");
+        assert_eq!(range(&[-706.047_412, 3.0], 4), "-706.0474 to 3.0000");
+        assert_eq!(range(&[0.0, 1e-4], 4), "0.00000000 to 0.00010000");
+        assert_eq!(range(&[-0.05, 0.02], 4), "-0.05000 to 0.02000");
+        assert_eq!(range(&[0.0, 2.0554e-7], 4), "0 to 2.0554e-7");
+        assert_eq!(range(&[0.0, 0.0], 4), "0.0000 to 0.0000");
+        assert_eq!(range(&[45.341_95], 4), "45.341950");
+        assert_eq!(range(&[1.25e-4], 4), "0.000125000");
+        assert_eq!(range(&[0.0], 4), "0.000000");
+    }
+
+    #[test]
+    fn rounding_is_no_work() {
+        assert_eq!(unrounded(1e-35, 0.04), 0.0);
+        assert_eq!(unrounded(-1.9e-15, 12.0), 0.0);
+        assert_eq!(unrounded(7.7e-8, 0.5), 7.7e-8);
+    }
 
     #[test]
     fn works_are_printed_with_the_digits_that_their_error_leaves() {

@@ -109,7 +109,9 @@ impl<'a> Scope<'a> {
             "TAU" => return Ok(Value::scalar(Number::still(core::f64::consts::TAU))),
             _ => {}
         }
-        let all = self.names.definitions.get(name).ok_or_else(|| Gap(format!("`{name}`")))?;
+        // Of the names of a text without faults those of events and of what they latch are left.
+        let all = self.names.definitions.get(name);
+        let all = all.ok_or_else(|| Gap(format!("event or latch `{name}`, which a motion alone knows")))?;
         let is_seen = |definition: &Definition| {
             definition.rounds.len() <= self.rounds.len()
                 && definition.rounds.iter().zip(self.rounds).all(|(own, round)| own.id == round.id)

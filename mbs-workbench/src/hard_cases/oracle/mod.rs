@@ -109,9 +109,6 @@ impl Oracle {
                 StatementKind::Function { name, .. } => {
                     return Err(Gap(format!("the caller's function `{}`", name.text)));
                 }
-                StatementKind::Event { name, .. } => {
-                    return Err(Gap(format!("event `{}`, which a motion alone knows", name.text)));
-                }
                 _ => {}
             }
         }

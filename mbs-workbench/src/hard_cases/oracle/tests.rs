@@ -111,6 +111,12 @@ fn laws_that_are_not_evaluated_are_named() {
             format!("contact c {{ {pressing}, restitution: 0.5, approach: 1 }}"),
             "a contact with a restitution",
         ),
+        ("event low: p[1] < 0; force push: [1N*low, 0] on p;".to_string(), "event or latch `low`"),
+        (
+            "event low: p[1] < 0; latch since: s = t at low; force push: [1 [N/s]*since, 0] on p;"
+                .to_string(),
+            "event or latch `since`",
+        ),
     ];
     let balance = |text: &str| {
         let oracle = read(&format!("{PENDULUM} {text}"))?;
@@ -121,6 +127,8 @@ fn laws_that_are_not_evaluated_are_named() {
         assert!(found.contains(words), "{law}: {found}");
     }
     assert!(balance(&format!("contact c {{ {pressing}, damping: 0.5 }}")).is_ok());
+    // An event that no force uses is no gap.
+    assert!(balance("event low: p[1] < 0; out on: 1 = low;").is_ok());
 }
 
 #[test]

@@ -10,7 +10,7 @@
 use crate::dynamics::formulations::projection::correction_factors;
 use crate::dynamics::formulations::set_valued::modes::{codes, follow, of_contact, set_modes};
 use crate::dynamics::formulations::set_valued::shares::Shares;
-use crate::dynamics::formulations::set_valued::{is_off, limit, no_gap, no_rate, size, sticks};
+use crate::dynamics::formulations::set_valued::{is_off, limit, no_force, no_gap, no_rate, size, sticks};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
@@ -336,7 +336,7 @@ where
         let (zero, one, y) = (R::constant(0.0), R::constant(1.0), self.y);
         let (qdd, lambda) = (&solved.rate.qd, &solved.lambda);
         let model = Model { parameters: trial, ..*self.model };
-        let held = model.with_set_valued_forces(self.position, y, (qdd, lambda));
+        let (held, balance) = model.with_set_valued_forces_and_terms(self.position, y, (qdd, lambda));
         let mut present = *rows;
         let copied = Rows(&mut present);
         model.mechanism.set_valued_rows(trial, self.position, &y.qd, &y.states, lambda, copied);
@@ -371,7 +371,7 @@ where
             }
             if row.restitution.is_some() {
                 // Written so that NaN does not push.
-                if !zero.less(mode.force) {
+                if !zero.less(mode.force + no_force(row, balance, self.model.metric)) {
                     *verdict = Verdict::Slips { direction: one, excess: one };
                 }
                 continue;

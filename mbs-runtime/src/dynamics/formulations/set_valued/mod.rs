@@ -25,7 +25,7 @@ use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::set_valued::{SetValuedMode, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
-use crate::tolerances::motion;
+use crate::tolerances::{motion, set_valued};
 
 /// Corrections of one position: the first leaves the square of the drift of a step.
 const MOST_CORRECTIONS: u32 = 4;
@@ -87,17 +87,36 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         y: &IntegratorState<R, N, S::States>,
         (qdd, lambda): (&[R; N], &[R; M]),
     ) -> S::Parameters {
+        self.with_set_valued_forces_and_terms(position, y, (qdd, lambda)).0
+    }
+
+    /// The same, with the largest term (J) of the balance that the forces are the rest of, along coordinates in their scales, or of the
+    /// motion: rounding of it is rounding of the forces.
+    pub(crate) fn with_set_valued_forces_and_terms(
+        &self,
+        position: &S::Position,
+        y: &IntegratorState<R, N, S::States>,
+        (qdd, lambda): (&[R; N], &[R; M]),
+    ) -> (S::Parameters, R) {
+        let zero = R::constant(0.0);
         if const { S::SET_VALUED.is_empty() } || !self.sticks() {
-            return *self.parameters;
+            return (*self.parameters, zero);
         }
         let (mechanism, parameters) = (self.mechanism, self.parameters);
         let (minus, one) = (R::constant(-1.0), [1.0]);
-        let open = mechanism.mass_times(parameters, position, qdd);
-        let open = open
-            .plus(R::constant(1.0), &one, [&mechanism.reaction(parameters, position, lambda)])
-            .plus(minus, &one, [&mechanism.force(parameters, position, &y.qd, &y.states, lambda)]);
+        let inertia = mechanism.mass_times(parameters, position, qdd);
+        let reaction = mechanism.reaction(parameters, position, lambda);
+        let force = mechanism.force(parameters, position, &y.qd, &y.states, lambda);
+        let open = inertia.plus(R::constant(1.0), &one, [&reaction]).plus(minus, &one, [&force]);
+        // Forces vanish where a swing passes its rest; the energy of the motion does not.
+        let momentum = mechanism.mass_times(parameters, position, &y.qd);
+        let mut most = dot(&momentum, &y.qd).abs();
+        let terms = inertia.iter().zip(&reaction).zip(&force).zip(&self.metric.coordinates);
+        for (((inertia, reaction), force), scale) in terms {
+            most = most.max(*scale * (inertia.abs() + reaction.abs() + force.abs()));
+        }
         let forces = Forces { model: self, open, parameters: *parameters };
-        mechanism.set_valued_rows(parameters, position, &y.qd, &y.states, lambda, forces)
+        (mechanism.set_valued_rows(parameters, position, &y.qd, &y.states, lambda, forces), most)
     }
 
     /// Brings a state to a step's end: positions and velocities of a formulation, with what sticks where it sticks.
@@ -167,6 +186,18 @@ pub(crate) fn no_gap<R: Real, const N: usize, const M: usize>(
     metric: &Metric<R, N, M>,
 ) -> R {
     motion::NO_VALUE.of::<R>() * of_gap(row, q, metric)
+}
+
+/// Force (N) of a row that is rounding, where `terms` (J) are those of the balance.
+pub(crate) fn no_force<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    terms: R,
+    metric: &Metric<R, N, M>,
+) -> R {
+    let entries = row.gradient.iter().zip(&metric.coordinates);
+    let steepest =
+        entries.fold(R::constant(0.0), |most: R, (entry, scale)| most.max((*entry * *scale).abs()));
+    if R::constant(0.0) < steepest { set_valued::EDGE.of::<R>() * terms / steepest } else { R::constant(0.0) }
 }
 
 /// Rate (m/s) of a row that is rounding.

@@ -1,6 +1,6 @@
 //! Ends of sticking and of sliding within a step, and of open and closed contacts.
 
-use crate::dynamics::formulations::set_valued::{is_off, limit, no_gap, no_rate, sticks};
+use crate::dynamics::formulations::set_valued::{is_off, limit, no_force, no_gap, no_rate, sticks};
 use crate::dynamics::integrators::event::Scrutiny;
 use crate::dynamics::integrators::event::group::{Filled, GROUP, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
@@ -26,9 +26,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     ) {
         let position = self.position(t, y);
         let lambda = solved.map_or([R::constant(0.0); M], |solved| solved.lambda);
-        let held = solved.map(|solved| self.with_set_valued_forces(&position, y, (&solved.rate.qd, &lambda)));
-        let parameters = held.as_ref().unwrap_or(self.parameters);
-        let margins = Margins { model: self, held: parameters, y, first, values };
+        let forces = |solved: &Solved<R, N, M, S::States>| {
+            self.with_set_valued_forces_and_terms(&position, y, (&solved.rate.qd, &lambda))
+        };
+        let (held, terms) = solved.map_or((*self.parameters, R::constant(0.0)), forces);
+        let margins = Margins { model: self, held: &held, terms, y, first, values };
         self.mechanism.set_valued_rows(self.parameters, &position, &y.qd, &y.states, &lambda, margins);
     }
 
@@ -58,6 +60,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 struct Margins<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     held: &'a S::Parameters,
+    /// Terms (J) of the balance that the forces are the rest of.
+    terms: R,
     y: &'a IntegratorState<R, N, S::States>,
     first: usize,
     values: &'a mut [R; GROUP],
@@ -76,7 +80,10 @@ where
             let (index, side) = ((self.first + place) / SIDES, (self.first + place) % SIDES);
             let (Some(row), Some(mode)) = (rows.get(index), modes.get(index)) else { return };
             *value = match (sticks(mode), side) {
-                (true, 0) if row.restitution.is_some() => mode.force,
+                // A contact without a force stays closed.
+                (true, 0) if row.restitution.is_some() => {
+                    mode.force + no_force(row, self.terms, self.model.metric)
+                }
                 (_, 1) if row.restitution.is_some() => one,
                 (false, _) if row.restitution.is_some() => {
                     row.place + no_gap(row, &self.y.q, self.model.metric)
