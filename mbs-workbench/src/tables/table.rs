@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use mbs_runtime::driver::FitError;
-use mbs_runtime::{Function, Scalar};
+use mbs_runtime::{Function, Interval, Scalar};
 
 use super::reader::{Columns, Points, ReadFault, read};
 use super::spline::{Pieces, Spline, SplineKind, close_period};
@@ -114,6 +114,10 @@ impl<T: Scalar> Function<T> for Table {
         let Pieces::Quintic(pieces, period) = &self.spline.pieces else { return None };
         let table = mbs_runtime::driver::Table::periodic(&self.spline.knots, pieces, *period);
         Function::<f64>::breakpoint_after(&table, x)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        self.spline.enclosure(from, to)
     }
 }
 
