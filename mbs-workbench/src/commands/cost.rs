@@ -102,7 +102,9 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let mut known = None;
     let (blueprint, second) = if is_file(arguments.name()) {
         methods(&arguments.methods)?;
-        (Blueprint::study_of_text(&Study::COST, &TextFile::read(arguments.name())?)?, None)
+        let text = TextFile::read(arguments.name())?;
+        super::functions::require(&text)?;
+        (Blueprint::study_of_text(&Study::COST, &text), None)
     } else {
         // What is wrong on the command line is said before anything is built.
         let target = Target::find(catalogue, arguments.name())?;
@@ -184,7 +186,7 @@ fn driven(target: &Target) -> CommandError {
 
 impl Arguments {
     /// The mechanism or file.
-    pub(super) fn name(&self) -> &str {
+    pub fn name(&self) -> &str {
         self.name.as_deref().unwrap_or_default()
     }
 

@@ -86,6 +86,16 @@ impl Spline {
         }
     }
 
+    /// The least place above `x` where pieces meet.
+    pub fn breakpoint_after(&self, x: f64) -> Option<f64> {
+        match &self.pieces {
+            Pieces::Cubic(pieces) => Function::<f64>::breakpoint_after(&Table::open(&self.knots, pieces), x),
+            Pieces::Quintic(pieces, period) => {
+                Function::<f64>::breakpoint_after(&Table::periodic(&self.knots, pieces, *period), x)
+            }
+        }
+    }
+
     /// Bounds of value and `K` − 1 derivatives between two arguments, `K` at most [`order`](Self::order) + 1.
     pub fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
         match &self.pieces {
