@@ -89,10 +89,11 @@ fn every_mechanism_runs_and_writes_its_report() {
         let (name, runs) = (card.name(), card.runs().expect("a text").len());
         let name = name.as_str();
         let scratch = Scratch::new(name);
-        // Matrices of 163 rows, and implicit steps of a millisecond, take a moment each where nothing is optimised.
+        // Matrices of 163 rows, implicit steps of a millisecond and impacts take a moment each where nothing is optimised.
         let until = match name {
-            "n_four_bar_40" => &["--until", "0.1"][..],
-            "governor" => &["--until", "0.5"],
+            "n_four_bar_40" | "governor" | "woodpecker" => &["--until", "0.1"][..],
+            "valve_spring" => &["--until", "0.01"],
+            "bouncing_balls" | "bricard" | "door_with_closer" => &["--until", "1"],
             _ => &[],
         };
         standard_output(run_into(&scratch, &[&["run", name, "--steps", "24"], until].concat()));

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use proc_macro2::Span;
 
-use super::{Dynamics, Equations, Row, Sparse, Sticking};
+use super::{Dynamics, Equations, Row, SetValuedRow, Sparse};
 use crate::diagnostics::Diagnostics;
 use crate::model::Model;
 use crate::symbolic::{Leaf, Node, NodeId};
@@ -165,7 +165,7 @@ fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 19] {
         ("a derivative by a state", dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect()),
         ("an output of multipliers or states", dynamics.loads.clone()),
         ("the gap of a contact", dynamics.gaps.iter().flat_map(|gap| gap.roots()).collect()),
-        ("a friction", dynamics.sticking.iter().flat_map(Sticking::roots).collect()),
+        ("a friction", dynamics.set_valued.iter().flat_map(SetValuedRow::roots).collect()),
         ("an event", dynamics.events.roots().collect()),
         ("the start", [some(&dynamics.start_states), some(&dynamics.start_rates)].concat()),
     ]

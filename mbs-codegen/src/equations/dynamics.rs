@@ -10,8 +10,8 @@ use super::lower::Clock;
 use super::non_negative::{NonNegative, Of, signed};
 use super::normal_forces::{NormalForces, normal_forces};
 use super::second_moments::second_moments;
+use super::set_valued::{SetValuedRow, set_valued_rows};
 use super::sparse::{Sparse, derivative, hessian, mirrored, products, transposed};
-use super::sticking::{Sticking, sticking};
 use super::sum::Sum;
 use super::{Row, again};
 use crate::model::dynamics::{Body, Dynamics as Declared, Rotation};
@@ -121,7 +121,7 @@ pub struct Dynamics {
     /// One a contact.
     pub gaps: Vec<Gap>,
     /// One a friction with stiction.
-    pub sticking: Vec<Sticking>,
+    pub set_valued: Vec<SetValuedRow>,
     /// Conditions of events and values that they latch.
     pub events: Events,
     /// Q contact by contact, where there are contacts.
@@ -182,7 +182,7 @@ impl Dynamics {
             roots.push(gap);
             roots.extend([rate, bound].into_iter().flatten());
         }
-        roots.extend(self.sticking.iter_mut().flat_map(Sticking::roots_mut));
+        roots.extend(self.set_valued.iter_mut().flat_map(SetValuedRow::roots_mut));
         roots.extend(self.events.roots_mut());
         roots.extend(self.limit_rates.iter_mut().flatten().flatten());
         roots.extend(self.by_contact.iter_mut().flat_map(ByContact::roots_mut));
@@ -282,7 +282,7 @@ pub fn derive(
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
         signed: signed(g, bounded.into_iter()),
         gaps,
-        sticking: sticking(g, &declared.sticking, &of, clock, count),
+        set_valued: set_valued_rows(g, &declared.set_valued, &of, clock, count),
         events: Events::of(declared, &of),
         by_contact,
         limit_rates: Vec::new(),

@@ -26,9 +26,9 @@ mod restitution_tests;
 mod second_moments;
 #[cfg(test)]
 mod seen_tests;
+mod set_valued;
 mod sparse;
 mod spatial_inertia;
-mod sticking;
 mod sum;
 pub mod turns;
 
@@ -44,8 +44,8 @@ pub use events::{Condition, Events};
 use lower::Lowered;
 pub use lower::MARGIN;
 pub use non_negative::Of;
+pub use set_valued::SetValuedRow;
 pub use sparse::Sparse;
-pub use sticking::Sticking;
 
 /// All expressions of a model as nodes of one graph, in their order.
 pub fn lowered(model: &Model) -> (Graph, Vec<NodeId>) {

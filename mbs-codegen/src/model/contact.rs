@@ -2,7 +2,7 @@
 
 use proc_macro2::Span;
 
-use super::dynamics::{Action, Contact, SetValued, Sticking};
+use super::dynamics::{Action, Contact, SetValued, SetValuedForce};
 use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
 use super::forces_by_name::Force as Seen;
@@ -73,7 +73,7 @@ impl Resolver<'_> {
         }
         let field = |field: &str| given.scalar(field).ok_or(Fault);
         let (gap, restitution, span) = (field("gap")?, field("restitution")?, name.span);
-        let index = self.dynamics().sticking.len();
+        let index = self.dynamics().set_valued.len();
         let (force, rest) = self.elaborate(Reach::Force, |work| {
             let one = work.expressions.push(Node::Number(1.0));
             let rest = work.push_binary(Binary::Subtract, one, restitution, span)?;
@@ -83,7 +83,7 @@ impl Resolver<'_> {
         let dynamics = self.dynamics();
         dynamics.signed.push(NonNegative { field, least: Least::Zero, of, value: rest, span });
         let law = SetValued::Contact { restitution, ordered: given.has("simultaneous") };
-        dynamics.sticking.push(Sticking { name: full.clone(), along: gap, law, span });
+        dynamics.set_valued.push(SetValuedForce { name: full.clone(), along: gap, law, span });
         self.names.seen.define(&name.text, Seen::Contact { gap, force, rigid: Some(index) });
         self.force(name, full, Action::Work(vec![(force, gap)]));
         Ok(())

@@ -24,7 +24,7 @@ pub struct Dynamics {
     /// Contacts, in the order of the text.
     pub contacts: Vec<Contact>,
     /// Frictions with stiction and rigid contacts, in the order of the text.
-    pub sticking: Vec<Sticking>,
+    pub set_valued: Vec<SetValuedForce>,
     /// Events, in the order of the text.
     pub events: Vec<Event>,
     /// Values that they latch, component by component.
@@ -153,7 +153,7 @@ pub struct Contact {
 
 /// A force that is set-valued: a friction at rest, or a contact without stiffness.
 #[derive(Debug)]
-pub struct Sticking {
+pub struct SetValuedForce {
     /// Its name.
     pub name: String,
     /// Length, or gap (m).

@@ -1,6 +1,6 @@
 //! Friction laws → forces along a length.
 
-use super::dynamics::{Action, OnContact, SetValued, Sticking};
+use super::dynamics::{Action, OnContact, SetValued, SetValuedForce};
 use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
 use super::forces_by_name::Force as Seen;
@@ -25,7 +25,7 @@ impl Resolver<'_> {
         let [force, sliding] = if let Some(bristles) = bristles {
             [bristles.force; 2]
         } else if let Some(most) = given.scalar("sticks") {
-            let index = self.dynamics().sticking.len();
+            let index = self.dynamics().set_valued.len();
             let contact = self.rigid_contact_of(normal);
             let Law { most, limit, force, sliding, slope } = self.elaborate(Reach::Force, |work| {
                 set_valued(work, (index, contact), [along, normal, coefficient, most], given, name)
@@ -37,7 +37,7 @@ impl Resolver<'_> {
                     SetValued::FrictionOnContact(on)
                 }
             };
-            self.dynamics().sticking.push(Sticking { name: full.clone(), along, law, span });
+            self.dynamics().set_valued.push(SetValuedForce { name: full.clone(), along, law, span });
             [force, sliding]
         } else {
             let speed = field("speed")?;
@@ -62,21 +62,21 @@ impl Resolver<'_> {
     /// The rigid contact whose force a normal force is, by its index among the set-valued forces.
     fn rigid_contact_of(&self, normal: Id) -> Option<usize> {
         let Node::Holding(index) = self.model.expressions.node(normal) else { return None };
-        let row = self.model.dynamics.as_ref()?.sticking.get(index)?;
+        let row = self.model.dynamics.as_ref()?.set_valued.get(index)?;
         matches!(row.law, SetValued::Contact { .. }).then_some(index)
     }
 
     /// Reports forces and rates made of a force that holds: it is what the balance with all other forces leaves, so these cannot need it.
     /// That of a rigid contact is one, but for the frictions that stick on it.
     pub(super) fn check_holding(&mut self) {
-        let Some(dynamics) = self.model.dynamics.as_ref().filter(|dynamics| !dynamics.sticking.is_empty())
+        let Some(dynamics) = self.model.dynamics.as_ref().filter(|dynamics| !dynamics.set_valued.is_empty())
         else {
             return;
         };
         let holding = |id: Id, of: &dyn Fn(&str) -> bool| {
             let other = |node| match node {
                 Node::Holding(index) => {
-                    dynamics.sticking.get(index).is_some_and(|friction| of(&friction.name))
+                    dynamics.set_valued.get(index).is_some_and(|friction| of(&friction.name))
                 }
                 _ => false,
             };
@@ -90,9 +90,9 @@ impl Resolver<'_> {
                 Action::Line(line) => vec![line.stiffness, line.length, line.damping, line.actuator],
                 Action::Turn(turn) => vec![turn.stiffness, turn.rest, turn.damping, turn.torque],
             };
-            let own = dynamics.sticking.iter().find(|row| row.name == force.name);
+            let own = dynamics.set_valued.iter().find(|row| row.name == force.name);
             let normal = own.and_then(|row| match row.law {
-                SetValued::FrictionOnContact(on) => dynamics.sticking.get(on.contact),
+                SetValued::FrictionOnContact(on) => dynamics.set_valued.get(on.contact),
                 _ => None,
             });
             let other = |name: &str| name != force.name && normal.is_none_or(|normal| name != normal.name);

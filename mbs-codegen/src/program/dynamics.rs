@@ -3,7 +3,7 @@
 use super::contacts::{ContactProgram, ContactRoots};
 use super::schedule::Section;
 use crate::equations::normal_forces::NormalForces;
-use crate::equations::{Dynamics, Gap, Sparse, Sticking};
+use crate::equations::{Dynamics, Gap, SetValuedRow, Sparse};
 use crate::symbolic::{Graph, NodeId};
 
 /// One section a function.
@@ -46,7 +46,7 @@ pub struct DynamicsProgram {
     /// Gaps of contacts with their rates.
     pub gaps: Section,
     /// Rows of frictions with stiction.
-    pub sticking: Section,
+    pub set_valued: Section,
     /// Conditions of events, and values that they latch.
     pub events: Section,
     /// Rates of working ranges.
@@ -81,7 +81,7 @@ pub struct Roots {
     slopes: Vec<NodeId>,
     loads: Vec<NodeId>,
     gaps: Vec<NodeId>,
-    sticking: Vec<NodeId>,
+    set_valued: Vec<NodeId>,
     events: Vec<NodeId>,
     limit_rates: Vec<NodeId>,
     by_contact: Option<ContactRoots>,
@@ -113,7 +113,7 @@ impl Roots {
             slopes: dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect(),
             loads: dynamics.loads.clone(),
             gaps: dynamics.gaps.iter().flat_map(Gap::roots).collect(),
-            sticking: dynamics.sticking.iter().flat_map(Sticking::roots).collect(),
+            set_valued: dynamics.set_valued.iter().flat_map(SetValuedRow::roots).collect(),
             events: dynamics.events.roots().collect(),
             limit_rates: dynamics.limit_rates.iter().flatten().copied().flatten().collect(),
             by_contact: ContactRoots::of(dynamics),
@@ -145,7 +145,7 @@ impl Roots {
             &self.slopes,
             &self.loads,
             &self.gaps,
-            &self.sticking,
+            &self.set_valued,
             &self.events,
             &self.limit_rates,
         ];
@@ -187,7 +187,7 @@ impl Roots {
             slopes: section(&self.slopes),
             loads: section(&self.loads),
             gaps: section(&self.gaps),
-            sticking: section(&self.sticking),
+            set_valued: section(&self.set_valued),
             events: section(&self.events),
             limit_rates: section(&self.limit_rates),
             by_contact: self.by_contact.as_ref().map(|roots| roots.order(graph, &section, behind)),

@@ -81,7 +81,7 @@ pub(crate) mod simulation;
 pub use crate::mechanism::enclosure::WithIntervals;
 pub use crate::mechanism::event::{Condition, Event};
 pub use crate::mechanism::normal_forces::{NormalForces, Term, WithNormalForces};
-pub use crate::mechanism::set_valued::{Grip, OnContact, SetValuedRow, WithSetValuedRows};
+pub use crate::mechanism::set_valued::{OnContact, SetValuedMode, SetValuedRow, WithSetValuedRows};
 pub use crate::mechanism::transformed::Transformed;
 pub use analyses::determinacy::Determinacy;
 pub use analyses::inverse::{Driven, inverse, inverse_with_states};

@@ -258,11 +258,11 @@ impl fmt::Display for Failure {
                     function.name, function.line
                 )
             }
-            FailureKind::Stiction { friction } => write!(
+            FailureKind::SetValuedForce { row } => write!(
                 f,
                 "`{}` (line {}) is a friction that sticks or a rigid contact, and has no slopes at rest: take an explicit method, as \
                  `DormandPrince8`, or a smooth law: `speed` in place of `sticks`, a contact with `stiffness`",
-                friction.name, friction.line
+                row.name, row.line
             ),
             FailureKind::EventOfMotion { event } => write!(
                 f,
@@ -270,12 +270,12 @@ impl fmt::Display for Failure {
                  scene without the event",
                 event.name, event.line
             ),
-            FailureKind::StickingUndecided { friction } => write!(
+            FailureKind::StickingUndecided { row } => write!(
                 f,
                 "`{}` (line {}) is undecided at t = {time} s: with the forces there a friction can neither stick nor slide, a contact neither \
                  push nor open, or a friction shares a force with others in a ratio that is not known; check coefficients and normal \
                  forces, and leave out frictions along lengths that follow from each other",
-                friction.name, friction.line
+                row.name, row.line
             ),
             FailureKind::ContactUndecided { contact, modes } => write!(
                 f,
@@ -301,12 +301,12 @@ impl fmt::Display for Failure {
                  restitution that contradict, or friction leaves several ways to go on; give them the same one, or less friction",
                 contact.name, contact.line
             ),
-            FailureKind::Chatter { friction, parts } => write!(
+            FailureKind::Chatter { entry, parts } => write!(
                 f,
                 "`{}` (line {}), or another one, changes between sticking and sliding, closed and open, or begun and ended, more than {parts} \
                  times within the step from t = {time} s: take shorter steps; give an event another end, `until`, where what it switches \
                  leads back to its condition",
-                friction.name, friction.line
+                entry.name, entry.line
             ),
             FailureKind::MechanismMismatch { mechanism } => {
                 write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")
@@ -376,13 +376,13 @@ mod tests {
             FailureKind::Ambiguous { row: ROW, solutions: 2, all: true }.at(time),
             FailureKind::Ambiguous { row: ROW, solutions: 1, all: false }.at(time),
             FailureKind::SharedNormalForce { row: ROW }.at(time),
-            FailureKind::Stiction { friction: ROW }.without_time(),
+            FailureKind::SetValuedForce { row: ROW }.without_time(),
             FailureKind::EventOfMotion { event: ROW }.without_time(),
-            FailureKind::StickingUndecided { friction: ROW }.at(time),
+            FailureKind::StickingUndecided { row: ROW }.at(time),
             FailureKind::ContactUndecided { contact: ROW, modes: 0 }.at(time),
             FailureKind::Penetration { contact: ROW, gap: -1e-3 }.at(time),
             FailureKind::ImpactUndecided { contact: ROW }.at(time),
-            FailureKind::Chatter { friction: ROW, parts: 64 }.at(time),
+            FailureKind::Chatter { entry: ROW, parts: 64 }.at(time),
             FailureKind::NoStateEquilibrium { state: ROW }.at(time),
             FailureKind::StatesUnknown { state: ROW }.at(time),
         ];

@@ -201,9 +201,9 @@ pub enum FailureKind {
         row: &'static Entry,
     },
     /// Friction with stiction has no slopes at rest, and a rigid contact none where it touches, which the method or analysis needs.
-    Stiction {
+    SetValuedForce {
         /// The friction or contact.
-        friction: &'static Entry,
+        row: &'static Entry,
     },
     /// Values that an event sets are known within a motion by an explicit method alone.
     EventOfMotion {
@@ -214,7 +214,7 @@ pub enum FailureKind {
     /// share a force in a ratio that is not known.
     StickingUndecided {
         /// A friction that may stick or slide, or a contact that may open.
-        friction: &'static Entry,
+        row: &'static Entry,
     },
     /// No force of a contact with friction is consistent with the motion, or several are (Painlevé's paradox): friction presses the contact
     /// deeper than its force lifts it.
@@ -241,7 +241,7 @@ pub enum FailureKind {
     /// without end at one instant.
     Chatter {
         /// The first friction with stiction, rigid contact or event.
-        friction: &'static Entry,
+        entry: &'static Entry,
         /// Parts that the step was divided into, or changes next to each other.
         parts: u32,
     },
@@ -425,7 +425,7 @@ impl FailureKind {
             | FailureKind::Unreachable { .. }
             | FailureKind::StatesUnknown { .. }
             | FailureKind::NotSmooth { .. }
-            | FailureKind::Stiction { .. }
+            | FailureKind::SetValuedForce { .. }
             | FailureKind::EventOfMotion { .. }
             | FailureKind::Penetration { .. }
             | FailureKind::MechanismMismatch { .. } => FailureSource::Input,

@@ -7,7 +7,7 @@ use crate::mechanism::limit::Limit;
 use crate::mechanism::margin::Margin;
 use crate::mechanism::normal_forces::WithNormalForces;
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::set_valued::{Grip, WithSetValuedRows};
+use crate::mechanism::set_valued::{SetValuedMode, WithSetValuedRows};
 use crate::mechanism::transformed::Transformed;
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Scalar;
@@ -168,14 +168,14 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, 
     /// `true` if frictions on rigid contacts are among [`SET_VALUED`](Self::SET_VALUED).
     const HAS_FRICTION_ON_CONTACTS: bool = false;
     /// Their modes, sticking or sliding, in the order of [`SET_VALUED`](Self::SET_VALUED). [`force`](Self::force) has the friction of those that
-    /// slide and the [`Grip::force`] of those that stick.
+    /// slide and the [`SetValuedMode::force`] of those that stick.
     #[inline]
-    fn grips(_parameters: &Self::Parameters) -> &[Grip<T>] {
+    fn set_valued_modes(_parameters: &Self::Parameters) -> &[SetValuedMode<T>] {
         &[]
     }
     /// The same, to be changed.
     #[inline]
-    fn grips_mut(_parameters: &mut Self::Parameters) -> &mut [Grip<T>] {
+    fn set_valued_modes_mut(_parameters: &mut Self::Parameters) -> &mut [SetValuedMode<T>] {
         &mut []
     }
     /// Result of `see` on their rows.

@@ -4,7 +4,7 @@ use crate::scalar::number::Scalar;
 
 /// Mode of a friction with stiction or of a rigid contact: constant within a step, changed at events between steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grip<T> {
+pub struct SetValuedMode<T> {
     /// Direction in which it slides: 1, −1, or 0 where it sticks. Of a contact, and of a friction on it, 1 where the contact is open. 0 where
     /// a contact is closed.
     pub direction: T,
@@ -19,15 +19,15 @@ pub struct Grip<T> {
     pub impulse: T,
 }
 
-impl<T: Scalar> Grip<T> {
+impl<T: Scalar> SetValuedMode<T> {
     /// Neither slides nor holds: before anything is known of the motion.
     pub fn new() -> Self {
         let zero = T::constant(0.0);
-        Grip { direction: zero, force: zero, place: zero, since: zero, impulse: zero }
+        SetValuedMode { direction: zero, force: zero, place: zero, since: zero, impulse: zero }
     }
 }
 
-impl<T: Scalar> Default for Grip<T> {
+impl<T: Scalar> Default for SetValuedMode<T> {
     fn default() -> Self {
         Self::new()
     }

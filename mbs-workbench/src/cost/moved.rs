@@ -359,7 +359,10 @@ fn curve(
                 });
                 coarser = Coarser::default();
                 // Finer steps do not change what a method knows of the text.
-                if matches!(failure.kind, FailureKind::Stiction { .. } | FailureKind::EventOfMotion { .. }) {
+                if matches!(
+                    failure.kind,
+                    FailureKind::SetValuedForce { .. } | FailureKind::EventOfMotion { .. }
+                ) {
                     break;
                 }
                 continue;

@@ -3,7 +3,7 @@
 //! The motion is the same, so a method must find the same one. The elimination that the compiler chose for the text takes no part:
 //! the blocks are not those of the text, and all entries count.
 
-use mbs_runtime::dynamics::{Event, Grip, SetValuedRow, Transformed, WithSetValuedRows};
+use mbs_runtime::dynamics::{Event, SetValuedMode, SetValuedRow, Transformed, WithSetValuedRows};
 use mbs_runtime::{
     BlockSolver, Dynamic, DynamicState, Energy, Entry, FunctionEntry, Gap, Limit, Margin, Mechanism,
     MissingSlope, NonNegative, Outcome, Partitioned, Reference, Scalar, StateSlope,
@@ -278,11 +278,11 @@ where
     fn evaluated_mut(parameters: &mut Self::Parameters) -> &mut [bool] {
         S::evaluated_mut(parameters)
     }
-    fn grips(parameters: &Self::Parameters) -> &[Grip<T>] {
-        S::grips(parameters)
+    fn set_valued_modes(parameters: &Self::Parameters) -> &[SetValuedMode<T>] {
+        S::set_valued_modes(parameters)
     }
-    fn grips_mut(parameters: &mut Self::Parameters) -> &mut [Grip<T>] {
-        S::grips_mut(parameters)
+    fn set_valued_modes_mut(parameters: &mut Self::Parameters) -> &mut [SetValuedMode<T>] {
+        S::set_valued_modes_mut(parameters)
     }
     fn remembered(parameters: &Self::Parameters) -> &[T] {
         S::remembered(parameters)

@@ -1,6 +1,6 @@
 //! A mechanism whose inputs follow courses over the time.
 
-use mbs_runtime::dynamics::{Event, Grip, Transformed, WithNormalForces, WithSetValuedRows};
+use mbs_runtime::dynamics::{Event, SetValuedMode, Transformed, WithNormalForces, WithSetValuedRows};
 use mbs_runtime::{
     BlockSolver, Dynamic, DynamicState, Energy, Entry, FunctionEntry, Gap, Kinematic, Limit, Margin,
     Mechanism, MissingSlope, NonNegative, Outcome, Partitioned, Reference, Solved,
@@ -246,11 +246,11 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Dynamic<f64, N, M> f
     fn evaluated_mut(parameters: &mut S::Parameters) -> &mut [bool] {
         S::evaluated_mut(parameters)
     }
-    fn grips(parameters: &S::Parameters) -> &[Grip<f64>] {
-        S::grips(parameters)
+    fn set_valued_modes(parameters: &S::Parameters) -> &[SetValuedMode<f64>] {
+        S::set_valued_modes(parameters)
     }
-    fn grips_mut(parameters: &mut S::Parameters) -> &mut [Grip<f64>] {
-        S::grips_mut(parameters)
+    fn set_valued_modes_mut(parameters: &mut S::Parameters) -> &mut [SetValuedMode<f64>] {
+        S::set_valued_modes_mut(parameters)
     }
     fn remembered(parameters: &S::Parameters) -> &[f64] {
         S::remembered(parameters)

@@ -79,7 +79,7 @@ where
         let lambda = <[f64; M]>::try_from(loads.lambda.as_slice()).ok()?;
         let mut p = mechanism.parameters();
         // The law of sliding forwards, as the oracle has it.
-        S::grips_mut(&mut p).iter_mut().for_each(|grip| grip.direction = 1.0);
+        S::set_valued_modes_mut(&mut p).iter_mut().for_each(|mode| mode.direction = 1.0);
         S::remembered_mut(&mut p).fill(1.0);
         let mut z = mechanism.start_states(&p);
         for (slot, value) in z.as_mut().iter_mut().zip(&loads.states) {

@@ -313,7 +313,7 @@ fn events_without_end_are_refused() {
     let method = Explicit::new(DormandPrince8, Projection::default());
     let mut run = Simulation::start_from_text(Reversed::default(), method, 0.0_f64).expect("a start");
     let failure = run.advance_to(2.0).expect_err("no motion with that force");
-    assert!(matches!(failure.kind, FailureKind::Chatter { friction, .. } if friction.name == "ahead"));
+    assert!(matches!(failure.kind, FailureKind::Chatter { entry, .. } if entry.name == "ahead"));
     assert!((run.t() - 0.6).abs() < 1e-6 && run.q()[0].is_finite(), "{}", run.t());
     let fixed = Explicit::new(RungeKutta4, Projection::default());
     let mut run = Simulation::start_from_text(Reversed::default(), fixed, 0.0_f64).expect("a start");
@@ -325,10 +325,7 @@ fn events_without_end_are_refused() {
     run.step(0.05).expect("a step before it");
     let failure = Simulation::start_from_text(Restless::default(), method, 0.0_f64);
     let failure = failure.map(|run| run.t()).expect_err("no start");
-    assert!(
-        matches!(failure.kind, FailureKind::Chatter { friction, .. } if friction.name == "on"),
-        "{failure}"
-    );
+    assert!(matches!(failure.kind, FailureKind::Chatter { entry, .. } if entry.name == "on"), "{failure}");
 }
 
 #[test]

@@ -60,8 +60,8 @@ fn a_ball_comes_to_rest_after_infinitely_many_bounces() {
         last = energy;
     }
     let parameters = run.parameters_with_forces();
-    let [grip] = Ball::grips(&parameters) else { panic!("one contact") };
-    assert!((grip.since - end(0.9)).abs() < 1e-6, "{} {}", grip.since, end(0.9));
+    let [mode] = Ball::set_valued_modes(&parameters) else { panic!("one contact") };
+    assert!((mode.since - end(0.9)).abs() < 1e-6, "{} {}", mode.since, end(0.9));
     assert!((run.loads()[0] - 2.0 * 9.81).abs() < 1e-12, "{:?}", run.loads());
 }
 
@@ -76,7 +76,7 @@ fn by_steps<F: Formulation<Ball<f64>, f64, 1, 0>>(formulation: F, h: f64) -> [f6
     let last = run.q()[0];
     run.step_to(10.0, steps(4.0)).expect("it comes to rest");
     assert!(run.balance().defect.abs() < 1e-9 && run.q()[0].abs() < 1e-12);
-    [first, last, Ball::grips(&run.parameters_with_forces())[0].since]
+    [first, last, Ball::set_valued_modes(&run.parameters_with_forces())[0].since]
 }
 
 #[test]
@@ -345,7 +345,7 @@ fn what_is_undefined_is_refused() {
     let refused = |failure: Option<Failure>| {
         let failure = failure.expect("refused");
         assert!(
-            matches!(failure.kind, FailureKind::Stiction { friction } if friction.name == "floor"),
+            matches!(failure.kind, FailureKind::SetValuedForce { row } if row.name == "floor"),
             "{failure}"
         );
     };

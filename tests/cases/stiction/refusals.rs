@@ -17,10 +17,7 @@ mechanism! {
 
 fn refused<X>(found: Result<X, Failure>) {
     let failure = found.err().expect("it is refused");
-    assert!(
-        matches!(failure.kind, FailureKind::Stiction { friction } if friction.name == "rub"),
-        "{failure}"
-    );
+    assert!(matches!(failure.kind, FailureKind::SetValuedForce { row } if row.name == "rub"), "{failure}");
     assert!(failure.to_string().contains("take an explicit method"), "{failure}");
 }
 

@@ -29,7 +29,7 @@ pub fn implementation(
         signed,
         missing,
         gaps,
-        sticking,
+        set_valued,
         events,
         limit_rates,
         mass,
@@ -115,7 +115,7 @@ pub fn implementation(
             #signed
             #missing
             #gaps
-            #sticking
+            #set_valued
             #events
             #limit_rates
             #enclosed

@@ -9,7 +9,7 @@ use crate::emit::rust::code::{array, block, body, lets, matrix};
 use crate::emit::rust::contacts::{self, Blocks};
 use crate::emit::rust::events;
 use crate::emit::rust::scope::{Scope, number};
-use crate::emit::rust::sticking;
+use crate::emit::rust::set_valued;
 use crate::equations::deferred::Slopes;
 use crate::equations::normal_forces::{NormalForces, NormalFunction};
 use crate::equations::{Dynamics, Equations, Gap, Of, Slope, Sparse};
@@ -30,7 +30,7 @@ pub struct DynamicBodies {
     /// Not a body: the table of contacts and the function of their gaps, where there are any.
     pub gaps: TokenStream,
     /// Not a body: the table of frictions with stiction and the function of their rows, where there are any.
-    pub sticking: TokenStream,
+    pub set_valued: TokenStream,
     /// Not a body: the table of events and the function of their conditions, where there are any.
     pub events: TokenStream,
     /// Not a body: the function of the rates of working ranges, where there are any.
@@ -99,7 +99,7 @@ pub fn bodies(
         signed: signed(dynamics, program, early, runtime),
         missing: missing(dynamics, scope.model, runtime),
         gaps: gaps(dynamics, program, scope, runtime),
-        sticking: sticking::items(&dynamics.sticking, &program.sticking, scope, runtime),
+        set_valued: set_valued::items(&dynamics.set_valued, &program.set_valued, scope, runtime),
         events: events::items(&dynamics.events, &program.events, scope, runtime),
         limit_rates: limit_rates(dynamics, program, scope, runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
@@ -251,7 +251,7 @@ pub fn contacts(equations: &Equations) -> Option<usize> {
 
 /// Number of frictions with stiction, where there are any.
 pub fn frictions(equations: &Equations) -> Option<usize> {
-    let count = equations.dynamics.as_ref()?.sticking.len();
+    let count = equations.dynamics.as_ref()?.set_valued.len();
     (count > 0).then_some(count)
 }
 

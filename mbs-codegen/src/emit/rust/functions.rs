@@ -333,7 +333,7 @@ fn memory(contacts: Option<usize>, frictions: Option<usize>, remembered: Option<
     let contacts = contacts.or(frictions.map(|_| 0));
     let mut text = contacts.map_or(String::new(), |contacts| format!(", [true; {contacts}]"));
     if let Some(frictions) = frictions {
-        text += &format!(", [__mbs::dynamics::Grip::new(); {frictions}]");
+        text += &format!(", [__mbs::dynamics::SetValuedMode::new(); {frictions}]");
     }
     if let Some(remembered) = remembered {
         text += &format!(", [{}; {remembered}]", number(0.0));

@@ -127,7 +127,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> T
     let frictions = bodies.frictions.or(bodies.remembered.map(|_| 0));
     let contacts = bodies.contacts.or(frictions.map(|_| 0));
     let closed = contacts.map(|contacts| quote! { , [::core::primitive::bool; #contacts] });
-    let grips = frictions.map(|count| quote! { , [#runtime::dynamics::Grip<T>; #count] });
+    let modes = frictions.map(|count| quote! { , [#runtime::dynamics::SetValuedMode<T>; #count] });
     let remembered = bodies.remembered.map(|count| quote! { , [T; #count] });
     let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
     let widths = widths.as_ref().map(|widths| {
@@ -160,7 +160,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> T
         const _: () = {
             /// Values of parameters alone.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-            pub struct __Parameters<T>([T; #kept_parameters] #closed #grips #remembered);
+            pub struct __Parameters<T>([T; #kept_parameters] #closed #modes #remembered);
 
             /// Values of `(q, t)` that functions share.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]

@@ -9,7 +9,7 @@ use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
 use crate::syntax::rust_identifiers::is_keyword;
 
 /// Field of the parameter stage that holds how friction sticks and slides.
-const GRIPS: &str = "__p.2";
+const MODES: &str = "__p.2";
 /// Values that events set, in the parameters.
 const REMEMBERED: &str = "__p.3";
 
@@ -122,9 +122,9 @@ impl Scope<'_> {
             Node::Leaf(Leaf::State(index)) => format!("__z[{index}]"),
             Node::Leaf(Leaf::Multiplier(index)) => format!("__lambda[{index}]"),
             Node::Leaf(Leaf::Direction(index)) => format!("__x[{index}]"),
-            Node::Leaf(Leaf::Sliding(index)) => format!("{GRIPS}[{index}].direction"),
-            Node::Leaf(Leaf::Holding(index)) => format!("{GRIPS}[{index}].force"),
-            Node::Leaf(Leaf::Impulse(index)) => format!("{GRIPS}[{index}].impulse"),
+            Node::Leaf(Leaf::Sliding(index)) => format!("{MODES}[{index}].direction"),
+            Node::Leaf(Leaf::Holding(index)) => format!("{MODES}[{index}].force"),
+            Node::Leaf(Leaf::Impulse(index)) => format!("{MODES}[{index}].impulse"),
             Node::Leaf(Leaf::Remembered(index)) => format!("{REMEMBERED}[{index}]"),
             Node::Leaf(Leaf::Given(MARGIN, group)) => format!("__margin{group}"),
             Node::Leaf(Leaf::Given(row, index)) => format!("__gain{row}[{index}]"),

@@ -35,7 +35,7 @@ where
         })?;
         let Some((parameters, solved)) = switched else { return Ok(false) };
         let of = Model { parameters: &parameters, ..*self.model };
-        self.parameters = self.parameters.map(|parameters| of.gripping(parameters));
+        self.parameters = self.parameters.map(|parameters| of.with_modes_of(parameters));
         (self.lambda, self.end.solved) = (solved.lambda, solved);
         let (last, count) = self.changed;
         let (zone, one) = (motion::NEXT_EVENT.of::<R>(), R::constant(1.0));
@@ -44,7 +44,7 @@ where
         self.changed = (t, if next { count.saturating_add(1) } else { 0 });
         match S::EVENTS.first() {
             Some(friction) if MOST_CHANGES < self.changed.1 => {
-                Err(FailureKind::Chatter { friction, parts: MOST_CHANGES }.at(t.to_f64()))
+                Err(FailureKind::Chatter { entry: friction, parts: MOST_CHANGES }.at(t.to_f64()))
             }
             _ => Ok(true),
         }

@@ -4,6 +4,6 @@ pub(crate) mod crossing;
 pub(crate) mod equations;
 pub(crate) mod events;
 pub(crate) mod explicit;
-pub(crate) mod grips;
+pub(crate) mod modes;
 pub(crate) mod phases;
 pub(crate) mod radau;

@@ -46,7 +46,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let zero = R::constant(0.0);
         let position = self.position(t, y);
         let (qdd, lambda) = solved.map_or(([zero; N], [zero; M]), |solved| (solved.rate.qd, solved.lambda));
-        let held = solved.map(|_| self.with_grip_forces(&position, y, (&qdd, &lambda)));
+        let held = solved.map(|_| self.with_set_valued_forces(&position, y, (&qdd, &lambda)));
         let parameters = held.as_ref().unwrap_or(self.parameters);
         let motion = DynamicState { qd: &y.qd, qdd: &qdd, lambda: &lambda, states: &y.states };
         self.mechanism.events(parameters, &position, &motion, see);
@@ -126,7 +126,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             solved = solve(&Model { parameters: &parameters, ..*self })?;
         }
         let parts = u32::try_from(CHANGES_OF_AN_EVENT * S::EVENTS.len()).unwrap_or(u32::MAX);
-        Err(FailureKind::Chatter { friction: checks::entry(S::EVENTS, number(last)), parts }.at(t.to_f64()))
+        Err(FailureKind::Chatter { entry: checks::entry(S::EVENTS, number(last)), parts }.at(t.to_f64()))
     }
 
     /// Before: `next` is as the model's parameters. After: the first event that changes has changed there; its index.

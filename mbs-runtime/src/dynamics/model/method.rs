@@ -11,7 +11,7 @@ use crate::scalar::number::Real;
 /// Fails where a text has functions that are not smooth enough for a [`Tangent`].
 ///
 /// # Errors
-/// [`FailureKind::NotSmooth`], [`FailureKind::Stiction`], [`FailureKind::EventOfMotion`].
+/// [`FailureKind::NotSmooth`], [`FailureKind::SetValuedForce`], [`FailureKind::EventOfMotion`].
 pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
     require_no_stiction::<S, R, N, M>()?;
@@ -21,11 +21,11 @@ pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
 /// Fails where a text has friction with stiction or events: outside a motion that knows whether it sticks or slides, and what has begun.
 ///
 /// # Errors
-/// [`FailureKind::Stiction`], [`FailureKind::EventOfMotion`].
+/// [`FailureKind::SetValuedForce`], [`FailureKind::EventOfMotion`].
 pub(crate) fn require_no_stiction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
     match (S::SET_VALUED.first(), S::EVENTS.first()) {
-        (Some(friction), _) => Err(FailureKind::Stiction { friction }.without_time()),
+        (Some(friction), _) => Err(FailureKind::SetValuedForce { row: friction }.without_time()),
         (None, Some(event)) => Err(FailureKind::EventOfMotion { event }.without_time()),
         (None, None) => Ok(()),
     }

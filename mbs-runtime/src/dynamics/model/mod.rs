@@ -224,13 +224,13 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         solve(&Model { mechanism: &mechanism, parameters: &parameters, ..*self })
     }
 
-    /// Parameters with the same contacts left out as here, and the same grips.
+    /// Parameters with the same contacts left out as here, and the same modes.
     #[inline(always)]
     pub(crate) fn alike(&self, mut parameters: S::Parameters) -> S::Parameters {
         for (to, from) in S::evaluated_mut(&mut parameters).iter_mut().zip(S::evaluated(self.parameters)) {
             *to = *from;
         }
-        self.gripping(parameters)
+        self.with_modes_of(parameters)
     }
 
     /// Fails where a coordinate, velocity or state is no number, or a coordinate is not resolved.
@@ -369,7 +369,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         lambda: &[R; M],
     ) -> IntegratorState<R, N, S::States> {
         if const { !S::SET_VALUED.is_empty() } {
-            let parameters = self.with_grip_forces(position, y, (&qdd, lambda));
+            let parameters = self.with_set_valued_forces(position, y, (&qdd, lambda));
             let model = Model { parameters: &parameters, ..*self };
             return model.rates_of_forces(position, y, qdd, lambda);
         }
@@ -432,7 +432,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {
         if const { !S::SET_VALUED.is_empty() } {
-            return self.balanced_with_grips(standing, position, at, lambda, solve);
+            return self.balanced_in_its_modes(standing, position, at, lambda, solve);
         }
         self.balanced_freely(standing, position, at, lambda, solve)
     }

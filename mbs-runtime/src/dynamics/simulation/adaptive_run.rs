@@ -155,7 +155,7 @@ where
         self.sampled(until, samples, |instant, run| {
             let mut counts = run.counts;
             counts.steps += u64::from(run.accepted.wrapping_sub(steps));
-            shown.take_grips(run.parameters.as_ref());
+            shown.take_modes(run.parameters.as_ref());
             shown.take(instant, Some(run.phases), counts);
             shown.passage = shown.passage.or(run.passage);
             shown.reference = reference + run.gained;
@@ -236,7 +236,7 @@ where
             adaptive.largest = adaptive.largest.min(R::constant(8.0 * MOST_RESOLVED) * resolution);
         }
         self.tolerance.require_resolved(self.now.t)?;
-        self.grip_anew()?;
+        self.decide_modes_anew()?;
         let Fresh { instant: from, gained, rank_rises } = self.fresh(&mut counts)?;
         let mut monitor = match &mut event {
             Some((direction, event)) => {
@@ -310,7 +310,7 @@ where
         self.errors = errors;
         self.passage = self.passage.or(passage);
         self.rank_rises = rank_rises;
-        self.take_grips(parameters.as_ref());
+        self.take_modes(parameters.as_ref());
         self.take(&Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
         self.passed = passage.is_some();
         self.reference = self.reference + gained + struck;

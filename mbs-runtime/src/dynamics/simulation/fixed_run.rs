@@ -390,7 +390,7 @@ where
         let (whole, most) = (until - self.now.t, self.most_parts());
         for part in 1..=most {
             self.require_parts(part)?;
-            self.grip()?;
+            self.decide_modes()?;
             let rest = until - self.now.t;
             let ahead = match part < most || S::HAS_MODES {
                 true => self.ahead_to_kink(self.part_of(whole, rest))?,

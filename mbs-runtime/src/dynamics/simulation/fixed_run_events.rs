@@ -66,7 +66,7 @@ where
             return self.stand().map(|()| false);
         }
         self.require_resolution((until - from) / R::constant(f64::from(steps)))?;
-        self.grip()?;
+        self.decide_modes()?;
         let fresh = self.fresh(&mut Counts::default())?.instant;
         let mut monitor = self.monitor(direction, &fresh, &mut event)?;
         for index in 1..=steps {
@@ -74,7 +74,7 @@ where
             let (length, most) = (end - self.now.t, self.most_parts());
             for part in 1..=most {
                 self.require_parts(part)?;
-                self.grip()?;
+                self.decide_modes()?;
                 let rest = end - self.now.t;
                 let to_kink = part < most || S::HAS_MODES;
                 let whole = match to_kink {

@@ -10,7 +10,7 @@ pub(crate) mod events;
 pub(crate) mod fixed_run;
 pub(crate) mod fixed_run_events;
 pub(crate) mod graded_steps;
-pub(crate) mod grips;
+pub(crate) mod modes;
 pub(crate) mod reading;
 
 use crate::dynamics::equilibrium::consistent_start;
@@ -221,8 +221,8 @@ where
         model.rank_rises = rank_rises(&model, t, &y);
         let parameters = events::anew(&method, &model, (t, &y), (&mut counts, true))?;
         let model = Model { parameters: &parameters, ..model };
-        let mut parameters = grips::anew(&method, &model, (t, &y), &mut counts)?;
-        S::grips_mut(&mut parameters).iter_mut().for_each(|grip| grip.since = t);
+        let mut parameters = modes::anew(&method, &model, (t, &y), &mut counts)?;
+        S::set_valued_modes_mut(&mut parameters).iter_mut().for_each(|mode| mode.since = t);
         let model = Model { parameters: &parameters, ..model };
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts);
         let solved = model.with_margin_of_rows(t, &y, model.require_held(t, &y, solved)?);
@@ -344,7 +344,7 @@ where
 
     /// Solves the present instant anew where parameters or inputs have changed: a run of no length.
     fn stand(&mut self) -> Result<(), Failure> {
-        self.grip_anew()?;
+        self.decide_modes_anew()?;
         let mut counts = self.counts;
         let Fresh { instant, gained, rank_rises } = self.fresh(&mut counts)?;
         if self.stale {
@@ -368,7 +368,7 @@ where
             }
         }
         if const { S::HAS_SIGNALS || !S::PHASES.is_empty() } {
-            self.parameters = self.model().gripping(self.mechanism.parameters());
+            self.parameters = self.model().with_modes_of(self.mechanism.parameters());
         }
         self.now = *next;
         self.counts = counts;
@@ -401,7 +401,7 @@ where
         if const { !S::PHASES.is_empty() } {
             self.mechanism.set_phases(at_present(&self.mechanism, self.now.t));
         }
-        self.parameters = self.model().gripping(self.mechanism.parameters());
+        self.parameters = self.model().with_modes_of(self.mechanism.parameters());
         self.metric = Metric::next_to(&self.mechanism, &self.parameters, self.now.t, &self.now.y.q);
         self.fault = parameter_failure(&self.mechanism);
         let after = self.model().total_energy(self.now.t, &self.now.y);

@@ -133,7 +133,7 @@ where
     /// Values of parameters at the present instant, with the directions of frictions that slide and the forces of those that stick.
     pub fn parameters_with_forces(&self) -> S::Parameters {
         let (model, Instant { t, y, .. }) = (self.model(), &self.now);
-        model.with_grip_forces(&model.position(*t, y), y, (self.qdd(), self.lambda()))
+        model.with_set_valued_forces(&model.position(*t, y), y, (self.qdd(), self.lambda()))
     }
 
     /// Multipliers that are unique, and rows that follow from others, at the present position. Where a motion passes a

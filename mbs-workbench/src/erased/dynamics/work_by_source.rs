@@ -112,7 +112,7 @@ impl<X> Counted<'_, X> {
         let position = model.position(t, y);
         let motion =
             DynamicState { qd: &y.qd, qdd: &solved.rate.qd, lambda: &solved.lambda, states: &y.states };
-        let parameters = model.with_grip_forces(&position, y, (&solved.rate.qd, &solved.lambda));
+        let parameters = model.with_set_valued_forces(&position, y, (&solved.rate.qd, &solved.lambda));
         let powers = power_balance::powers(model.mechanism, (&parameters, &position), &motion);
         let power = |index: &usize| powers.get(*index).map_or(0.0, |(_, _, power)| *power);
         match self.supplies {

@@ -17,7 +17,7 @@ use crate::failure::{Failure, FailureKind, checks};
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::Entry;
 use crate::mechanism::dynamic::Dynamic;
-use crate::mechanism::set_valued::{Grip, OnContact, SetValuedRow, WithSetValuedRows};
+use crate::mechanism::set_valued::{OnContact, SetValuedMode, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
 use crate::tolerances::{motion, set_valued};
 
@@ -113,22 +113,22 @@ where
         let rest = self.at_rest(rows);
         let mut trial = *self.model.parameters;
         let is_off = |row: &SetValuedRow<R, N>| row.on.is_some_and(|on| rest.get(on.contact) != Some(&true));
-        for ((grip, row), rest) in S::grips_mut(&mut trial).iter_mut().zip(rows).zip(&rest) {
+        for ((mode, row), rest) in S::set_valued_modes_mut(&mut trial).iter_mut().zip(rows).zip(&rest) {
             if row.restitution.is_some() {
-                let closes = *rest && !sticks(grip);
-                (grip.place, grip.since) = (zero, if closes { self.t } else { grip.since });
-                grip.direction = if *rest { zero } else { R::constant(1.0) };
+                let closes = *rest && !sticks(mode);
+                (mode.place, mode.since) = (zero, if closes { self.t } else { mode.since });
+                mode.direction = if *rest { zero } else { R::constant(1.0) };
             } else if is_off(row) {
-                (grip.place, grip.direction) = (zero, R::constant(1.0));
+                (mode.place, mode.direction) = (zero, R::constant(1.0));
             } else if !rest {
-                grip.direction = row.rate.sign();
-            } else if !sticks(grip) || self.known.is_none() {
+                mode.direction = row.rate.sign();
+            } else if !sticks(mode) || self.known.is_none() {
                 // What has stuck and still does keeps its place, roundings apart.
-                let off = (row.place - grip.place).abs();
-                let stays = sticks(grip)
+                let off = (row.place - mode.place).abs();
+                let stays = sticks(mode)
                     && off <= set_valued::EDGE.of::<R>() * size(&row.gradient, &self.y.q, row.place);
-                grip.place = if stays { grip.place } else { row.place };
-                grip.direction = zero;
+                mode.place = if stays { mode.place } else { row.place };
+                mode.direction = zero;
             }
         }
         let mut decided = self.pivots(rows, &rest, &mut trial)?;
@@ -139,14 +139,15 @@ where
             let Some(index) = self.held_by_others(rows, &rest, &trial, &decided)? else { break };
             if round == K {
                 let friction = row::<S, R, N, M>(index);
-                return Err(FailureKind::StickingUndecided { friction }.at(self.t.to_f64()));
+                return Err(FailureKind::StickingUndecided { row: friction }.at(self.t.to_f64()));
             }
             // It slipped before the row that moves: with that one sliding it may hold.
-            let grips = S::grips_mut(&mut trial).iter_mut().skip(index).take(1);
-            grips.for_each(|grip| grip.direction = zero);
+            let modes = S::set_valued_modes_mut(&mut trial).iter_mut().skip(index).take(1);
+            modes.for_each(|mode| mode.direction = zero);
             decided = self.pivots(rows, &rest, &mut trial)?;
         }
-        let same = self.known.is_some() && S::grips(&trial) == S::grips(self.model.parameters);
+        let same =
+            self.known.is_some() && S::set_valued_modes(&trial) == S::set_valued_modes(self.model.parameters);
         Ok((!same).then_some((trial, decided)))
     }
 }
@@ -162,18 +163,18 @@ where
     /// Rows at zero speed: those that stick, those whose sliding has ended, and at a new start those without speed.
     fn at_rest<const K: usize>(&self, rows: &[SetValuedRow<R, N>; K]) -> [bool; K] {
         let (zero, mut rest) = (R::constant(0.0), [false; K]);
-        let grips = S::grips(self.model.parameters);
+        let modes = S::set_valued_modes(self.model.parameters);
         let resolution = R::constant(ROUNDINGS_OF_AN_EVENT) * motion::LEAST_STEP.of() * self.t.abs();
-        for ((rest, row), grip) in rest.iter_mut().zip(rows).zip(grips) {
+        for ((rest, row), mode) in rest.iter_mut().zip(rows).zip(modes) {
             let change = self.known.map_or(zero, |known| dot(&row.gradient, &known.rate.qd) - row.gamma);
             let none = no_rate(row, &self.y.qd, self.model.metric) + resolution * change.abs();
             let touches = || row.place <= no_gap(row, &self.y.q, self.model.metric);
             *rest = match self.known {
                 // A friction on an open contact has no direction.
-                Some(_) if is_off(row, grips) => row.rate.abs() <= none,
-                Some(_) if row.restitution.is_some() => sticks(grip) || touches() && row.rate <= none,
+                Some(_) if is_off(row, modes) => row.rate.abs() <= none,
+                Some(_) if row.restitution.is_some() => sticks(mode) || touches() && row.rate <= none,
                 None if row.restitution.is_some() => touches() && row.rate.abs() <= none,
-                Some(_) => sticks(grip) || grip.direction * row.rate <= none,
+                Some(_) => sticks(mode) || mode.direction * row.rate <= none,
                 None => row.rate.abs() <= none,
             };
         }
@@ -189,7 +190,7 @@ where
     /// Rates with modes of `trial`, which are those of the model in the first trial where nothing is new.
     fn rates(&mut self, trial: &S::Parameters) -> Result<Solved<R, N, M, S::States>, Failure> {
         if let Some(known) = self.known
-            && S::grips(trial) == S::grips(self.model.parameters)
+            && S::set_valued_modes(trial) == S::set_valued_modes(self.model.parameters)
         {
             return Ok(*known);
         }
@@ -223,9 +224,9 @@ where
                 }
             }
             wrong = most.0;
-            let chosen = S::grips_mut(trial).iter_mut().zip(&verdicts).skip(wrong).take(1);
-            for (grip, verdict) in chosen {
-                grip.direction = match verdict {
+            let chosen = S::set_valued_modes_mut(trial).iter_mut().zip(&verdicts).skip(wrong).take(1);
+            for (mode, verdict) in chosen {
+                mode.direction = match verdict {
                     Verdict::Slips { direction, .. } => *direction,
                     _ => R::constant(0.0),
                 };
@@ -239,7 +240,7 @@ where
         }
         let undecided = match of_contact(rows, wrong) {
             Some(contact) => FailureKind::ContactUndecided { contact: row::<S, R, N, M>(contact), modes: 0 },
-            None => FailureKind::StickingUndecided { friction: row::<S, R, N, M>(wrong) },
+            None => FailureKind::StickingUndecided { row: row::<S, R, N, M>(wrong) },
         };
         Err(failed.unwrap_or(undecided.at(self.t.to_f64())))
     }
@@ -286,15 +287,16 @@ where
         if count > Self::MOST || self.model.has_one_mode(self.t, self.position, rows, rest, trial) {
             return Ok(());
         }
-        let (mut other, mut modes, mut contact) = (*trial, 1, None);
+        let (mut other, mut number, mut contact) = (*trial, 1, None);
         for code in 0..codes(count) {
             if set_modes::<S, R, N, M, K>(rows, rest, code, &mut other).is_none() {
                 continue;
             }
-            let pairs = rows.iter().zip(S::grips(&other).iter().zip(S::grips(trial)));
-            let differs = |(row, (one, other)): (&SetValuedRow<R, N>, (&Grip<R>, &Grip<R>))| {
-                row.restitution.is_some() && sticks(one) != sticks(other)
-            };
+            let pairs = rows.iter().zip(S::set_valued_modes(&other).iter().zip(S::set_valued_modes(trial)));
+            let differs =
+                |(row, (one, other)): (&SetValuedRow<R, N>, (&SetValuedMode<R>, &SetValuedMode<R>))| {
+                    row.restitution.is_some() && sticks(one) != sticks(other)
+                };
             let Some(index) = pairs.enumerate().find(|(_, pair)| differs(*pair)).map(|(index, _)| index)
             else {
                 continue;
@@ -306,12 +308,12 @@ where
             };
             let moves = found.rate.qd.iter().zip(&solved.rate.qd).any(apart);
             if moves && self.is_consistent(rows, rest, &other, &found) {
-                (modes, contact) = (modes + 1, contact.or(Some(index)));
+                (number, contact) = (number + 1, contact.or(Some(index)));
             }
         }
         let Some(contact) = contact else { return Ok(()) };
         let contact = row::<S, R, N, M>(contact);
-        Err(FailureKind::ContactUndecided { contact, modes }.at(self.t.to_f64()))
+        Err(FailureKind::ContactUndecided { contact, modes: number }.at(self.t.to_f64()))
     }
 
     fn is_consistent<const K: usize>(
@@ -334,15 +336,15 @@ where
         let (zero, one, y) = (R::constant(0.0), R::constant(1.0), self.y);
         let (qdd, lambda) = (&solved.rate.qd, &solved.lambda);
         let model = Model { parameters: trial, ..*self.model };
-        let held = model.with_grip_forces(self.position, y, (qdd, lambda));
+        let held = model.with_set_valued_forces(self.position, y, (qdd, lambda));
         let mut present = *rows;
         let copied = Rows(&mut present);
         model.mechanism.set_valued_rows(trial, self.position, &y.qd, &y.states, lambda, copied);
         let mut verdicts = [Verdict::Consistent; K];
-        let grips = S::grips(&held).iter().zip(rest);
-        let all = S::grips(&held);
-        for ((verdict, row), (grip, _)) in
-            verdicts.iter_mut().zip(&present).zip(grips).filter(|(_, (_, rest))| **rest)
+        let modes = S::set_valued_modes(&held).iter().zip(rest);
+        let all = S::set_valued_modes(&held);
+        for ((verdict, row), (mode, _)) in
+            verdicts.iter_mut().zip(&present).zip(modes).filter(|(_, (_, rest))| **rest)
         {
             // Of a contact that pulls nothing else counts: it opens first.
             let pulls = |on: OnContact<R>| all.get(on.contact).is_none_or(|contact| contact.force <= zero);
@@ -351,7 +353,7 @@ where
             }
             let acceleration = dot(&row.gradient, qdd) - row.gamma;
             let terms = size(&row.gradient, qdd, acceleration) + row.gamma.abs();
-            let (force, limit) = (grip.force.abs(), limit(row, all));
+            let (force, limit) = (mode.force.abs(), limit(row, all));
             // Accelerations that are none are roundings of those that the friction's forces make.
             let exceeds = |acceleration: R, share: R| {
                 share * terms < acceleration && {
@@ -359,22 +361,22 @@ where
                     !acceleration.less(share * (terms + made))
                 }
             };
-            if !sticks(grip) {
+            if !sticks(mode) {
                 // As much as the forces at the edge of sticking make, and more: one of both is consistent.
                 let edge = R::constant(SLIDING_EDGE) * set_valued::EDGE.of();
-                if exceeds(-acceleration * grip.direction, edge) {
+                if exceeds(-acceleration * mode.direction, edge) {
                     *verdict = Verdict::Sticks;
                 }
                 continue;
             }
             if row.restitution.is_some() {
                 // Written so that NaN does not push.
-                if !zero.less(grip.force) {
+                if !zero.less(mode.force) {
                     *verdict = Verdict::Slips { direction: one, excess: one };
                 }
                 continue;
             }
-            let against = if zero < grip.force { -one } else { one };
+            let against = if zero < mode.force { -one } else { one };
             // Written so that NaN does not hold.
             if !force.less(limit - set_valued::EDGE.of::<R>() * (limit + force)) {
                 let least = R::constant(f64::from(f32::MIN_POSITIVE));
@@ -394,25 +396,25 @@ where
         trial: &S::Parameters,
         solved: &Solved<R, N, M, S::States>,
     ) -> Result<Option<usize>, Failure> {
-        let (zero, qdd, grips) = (R::constant(0.0), &solved.rate.qd, S::grips(trial));
+        let (zero, qdd, modes) = (R::constant(0.0), &solved.rate.qd, S::set_valued_modes(trial));
         let held = if const { S::HAS_FRICTION_ON_CONTACTS } {
             let model = Model { parameters: trial, ..*self.model };
-            model.with_grip_forces(self.position, self.y, (qdd, &solved.lambda))
+            model.with_set_valued_forces(self.position, self.y, (qdd, &solved.lambda))
         } else {
             *trial
         };
-        let forces = S::grips(&held);
+        let forces = S::set_valued_modes(&held);
         let mut holds = [false; K];
-        holds.iter_mut().zip(grips).for_each(|(holds, grip)| *holds = sticks(grip));
-        for (index, ((row, grip), _)) in
-            rows.iter().zip(grips).zip(rest).enumerate().filter(|(_, (_, rest))| **rest)
+        holds.iter_mut().zip(modes).for_each(|(holds, mode)| *holds = sticks(mode));
+        for (index, ((row, mode), _)) in
+            rows.iter().zip(modes).zip(rest).enumerate().filter(|(_, (_, rest))| **rest)
         {
             let acceleration = dot(&row.gradient, qdd) - row.gamma;
             let terms = size(&row.gradient, qdd, acceleration) + row.gamma.abs();
             let still = |made: R| acceleration.abs() <= set_valued::CONTRADICTED.of::<R>() * (terms + made);
             if row.restitution.is_some()
-                || sticks(grip)
-                || is_off(row, grips)
+                || sticks(mode)
+                || is_off(row, modes)
                 || !holds.contains(&true)
                 || !still(limit(row, forces) * self.softness(&row.gradient))
             {

@@ -121,11 +121,11 @@ where
     fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let (model, zero) = (self.model, R::constant(0.0));
         let (mut touching, mut strikes) = ([false; K], false);
-        for (index, (row, grip)) in rows.iter().zip(S::grips(model.parameters)).enumerate() {
+        for (index, (row, mode)) in rows.iter().zip(S::set_valued_modes(model.parameters)).enumerate() {
             if row.restitution.is_none() {
                 continue;
             }
-            let (q, closed) = (&self.y.q, sticks(grip));
+            let (q, closed) = (&self.y.q, sticks(mode));
             if !closed {
                 model.require_apart(self.t, q, (index, row))?;
             }
@@ -167,7 +167,8 @@ where
                 // The last one takes contacts along that separate: it is the shortest change to speeds that open or keep all gaps.
                 let restitution = row.restitution.filter(|_| impact < most).unwrap_or(zero);
                 // What was closed has no rate but rounding.
-                let closed = impact == 0 && S::grips(model.parameters).get(index).is_some_and(sticks);
+                let closed =
+                    impact == 0 && S::set_valued_modes(model.parameters).get(index).is_some_and(sticks);
                 *part = *part && (impact == most || row.rate <= none || closed);
                 *b = row.rate + restitution * row.rate.min(zero);
                 if *part && row.rate < -none && approaching.is_none() {
@@ -206,13 +207,13 @@ where
         let mut columns = answers;
         if const { S::HAS_FRICTION_ON_CONTACTS } {
             let acting = rubbing(rows, &touching);
-            for (index, (row, grip)) in present.iter().zip(S::grips_mut(&mut rubs)).enumerate() {
+            for (index, (row, mode)) in present.iter().zip(S::set_valued_modes_mut(&mut rubs)).enumerate() {
                 let Some(on) = row.on.filter(|_| acting.get(index) == Some(&true)) else { continue };
                 let sticks = stuck.get(index) == Some(&true);
-                grip.direction = if sticks { zero } else { slip(row.rate) };
-                grip.place = if sticks { row.place } else { zero };
+                mode.direction = if sticks { zero } else { slip(row.rate) };
+                mode.place = if sticks { row.place } else { zero };
                 let answer = answers.get(index).copied().unwrap_or([zero; N]);
-                let sliding = -(grip.direction * on.sliding);
+                let sliding = -(mode.direction * on.sliding);
                 let column = columns.iter_mut().skip(on.contact).take(1);
                 column.for_each(|column| *column = column.plus(sliding, &[1.0], [&answer]));
             }
@@ -220,33 +221,37 @@ where
         let entry = |row: &SetValuedRow<R, N>, column: usize| {
             columns.get(column).map_or(zero, |answer| dot(&row.gradient, answer))
         };
-        let (mut modes, closed) = (rubs, Model { parameters: &rubs, ..*model });
-        self.rest(&closed, (&mut next, &mut modes), (&present, &touching), entry, &columns)?;
+        let (mut parameters, closed) = (rubs, Model { parameters: &rubs, ..*model });
+        self.rest(&closed, (&mut next, &mut parameters), (&present, &touching), entry, &columns)?;
         read(&next, &mut present);
-        let grips = S::grips_mut(&mut modes).iter_mut().zip(S::grips(model.parameters)).zip(&present);
-        for ((grip, old), row) in grips {
+        let modes = S::set_valued_modes_mut(&mut parameters)
+            .iter_mut()
+            .zip(S::set_valued_modes(model.parameters))
+            .zip(&present);
+        for ((mode, old), row) in modes {
             let moves = no_rate(row, &next.qd, model.metric) < row.rate.abs();
             match row.restitution {
-                Some(_) if moves || !sticks(grip) => grip.direction = R::constant(1.0),
+                Some(_) if moves || !sticks(mode) => mode.direction = R::constant(1.0),
                 Some(_) => {}
                 // Decided with the contacts.
                 None if row.on.is_some() => {}
-                None if moves => grip.direction = row.rate.sign(),
-                None => *grip = *old,
+                None if moves => mode.direction = row.rate.sign(),
+                None => *mode = *old,
             }
         }
         if const { S::HAS_FRICTION_ON_CONTACTS } {
-            let open = rows.map(|row| is_off(&row, S::grips(&modes)));
-            let frictions = S::grips_mut(&mut modes).iter_mut().zip(&open).filter(|(_, open)| **open);
-            frictions.for_each(|(grip, _)| grip.direction = R::constant(1.0));
+            let open = rows.map(|row| is_off(&row, S::set_valued_modes(&parameters)));
+            let frictions =
+                S::set_valued_modes_mut(&mut parameters).iter_mut().zip(&open).filter(|(_, open)| **open);
+            frictions.for_each(|(mode, _)| mode.direction = R::constant(1.0));
         }
-        let struck = S::grips_mut(&mut modes).iter_mut().zip(&present).zip(&total);
-        for ((grip, row), total) in struck {
+        let struck = S::set_valued_modes_mut(&mut parameters).iter_mut().zip(&present).zip(&total);
+        for ((mode, row), total) in struck {
             let strikes = row.restitution.is_some() && *total != zero;
-            grip.impulse = if strikes { *total } else { grip.impulse };
+            mode.impulse = if strikes { *total } else { mode.impulse };
         }
         let gained = kinetic(&next.qd) - before;
-        Ok(Some(Struck { y: next, parameters: modes, gained }))
+        Ok(Some(Struck { y: next, parameters, gained }))
     }
 }
 
@@ -269,13 +274,13 @@ where
     ) -> Result<StateInModes<S, R, N, M>, Failure> {
         let (model, zero, one) = (self.model, R::constant(0.0), R::constant(1.0));
         let (mut next, mut parameters) = (*self.y, *model.parameters);
-        for (grip, touches) in S::grips_mut(&mut parameters).iter_mut().zip(touching) {
-            let since = if sticks(grip) { grip.since } else { self.t };
-            (grip.direction, grip.place, grip.since) = (if *touches { zero } else { one }, zero, since);
+        for (mode, touches) in S::set_valued_modes_mut(&mut parameters).iter_mut().zip(touching) {
+            let since = if sticks(mode) { mode.since } else { self.t };
+            (mode.direction, mode.place, mode.since) = (if *touches { zero } else { one }, zero, since);
         }
         if const { S::HAS_FRICTION_ON_CONTACTS } {
-            for (grip, row) in S::grips_mut(&mut parameters).iter_mut().zip(rows) {
-                grip.direction = if row.on.is_some() { slip(row.rate) } else { grip.direction };
+            for (mode, row) in S::set_valued_modes_mut(&mut parameters).iter_mut().zip(rows) {
+                mode.direction = if row.on.is_some() { slip(row.rate) } else { mode.direction };
             }
         }
         let closed = Model { parameters: &parameters, ..*model };
@@ -304,13 +309,13 @@ where
         let known = if rises { (self.solve)(closed, next, self.counts).ok() } else { None };
         let forces = known.map(|known| {
             let position = closed.position(self.t, next);
-            closed.with_grip_forces(&position, next, (&known.rate.qd, &known.lambda))
+            closed.with_set_valued_forces(&position, next, (&known.rate.qd, &known.lambda))
         });
         // What sticks on a contact stays so while others close.
         let with_stuck = |mask: &[bool; K]| {
             let mut mask = *mask;
-            let frictions = mask.iter_mut().zip(rows).zip(S::grips(closed.parameters));
-            frictions.for_each(|((held, row), grip)| *held = *held || row.on.is_some() && sticks(grip));
+            let frictions = mask.iter_mut().zip(rows).zip(S::set_valued_modes(closed.parameters));
+            frictions.for_each(|((held, row), mode)| *held = *held || row.on.is_some() && sticks(mode));
             mask
         };
         let mask = with_stuck(touching);
@@ -318,8 +323,10 @@ where
         let (mut ends, mut open) = ([false; K], [zero; K]);
         for (index, (row, touches)) in rows.iter().zip(touching).enumerate() {
             let Some(restitution) = row.restitution.filter(|_| *touches) else { continue };
-            let force =
-                forces.as_ref().and_then(|known| S::grips(known).get(index)).map_or(zero, |grip| grip.force);
+            let force = forces
+                .as_ref()
+                .and_then(|known| S::set_valued_modes(known).get(index))
+                .map_or(zero, |mode| mode.force);
             // The acceleration with which it would fall back while the others hold.
             let mut alone = [zero; K];
             alone.iter_mut().skip(index).take(1).for_each(|alone| *alone = one);
@@ -329,14 +336,15 @@ where
             let height = set_valued::LEAST_FLIGHT.of::<R>() * of_gap(row, &next.q, closed.metric);
             let is_still = still.get(index) == Some(&true);
             let falls = restitution < one && row.rate * row.rate < two * pressed * height;
-            let place = ends.iter_mut().zip(&mut open).zip(S::grips_mut(parameters)).skip(index).take(1);
-            for ((ends, open), grip) in place {
+            let place =
+                ends.iter_mut().zip(&mut open).zip(S::set_valued_modes_mut(parameters)).skip(index).take(1);
+            for ((ends, open), mode) in place {
                 // Those at rest stay there.
                 (*ends, *open) = (is_still || falls, row.rate);
                 if !is_still && falls {
-                    grip.since = self.t + two * row.rate / (pressed * (one - restitution));
+                    mode.since = self.t + two * row.rate / (pressed * (one - restitution));
                 } else if !is_still {
-                    grip.direction = one;
+                    mode.direction = one;
                 }
             }
         }

@@ -23,7 +23,7 @@ use crate::failure::Failure;
 use crate::linear_algebra::parts::at;
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
-use crate::mechanism::set_valued::{Grip, SetValuedRow, WithSetValuedRows};
+use crate::mechanism::set_valued::{SetValuedMode, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
 use crate::tolerances::motion;
 
@@ -31,29 +31,31 @@ use crate::tolerances::motion;
 const MOST_CORRECTIONS: u32 = 4;
 
 /// `true` for a friction that sticks.
-pub(crate) fn sticks<R: Real>(grip: &Grip<R>) -> bool {
-    grip.direction == R::constant(0.0)
+pub(crate) fn sticks<R: Real>(mode: &SetValuedMode<R>) -> bool {
+    mode.direction == R::constant(0.0)
 }
 
 /// Which frictions stick: K.
-fn mask<R: Real, const K: usize>(grips: &[Grip<R>]) -> [bool; K] {
+fn mask<R: Real, const K: usize>(modes: &[SetValuedMode<R>]) -> [bool; K] {
     let mut mask = [false; K];
-    mask.iter_mut().zip(grips).for_each(|(mask, grip)| *mask = sticks(grip));
+    mask.iter_mut().zip(modes).for_each(|(mask, mode)| *mask = sticks(mode));
     mask
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// `true` if any friction sticks.
     pub(crate) fn sticks(&self) -> bool {
-        S::grips(self.parameters).iter().any(sticks)
+        S::set_valued_modes(self.parameters).iter().any(sticks)
     }
 
-    /// Parameters with the same grips and values of events as here.
+    /// Parameters with the same modes and values of events as here.
     #[inline(always)]
-    pub(crate) fn gripping(&self, mut parameters: S::Parameters) -> S::Parameters {
+    pub(crate) fn with_modes_of(&self, mut parameters: S::Parameters) -> S::Parameters {
         let values = S::remembered_mut(&mut parameters).iter_mut();
         values.zip(S::remembered(self.parameters)).for_each(|(to, from)| *to = *from);
-        for (to, from) in S::grips_mut(&mut parameters).iter_mut().zip(S::grips(self.parameters)) {
+        for (to, from) in
+            S::set_valued_modes_mut(&mut parameters).iter_mut().zip(S::set_valued_modes(self.parameters))
+        {
             *to = *from;
         }
         parameters
@@ -61,7 +63,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
     /// Accelerations and multipliers with the frictions held that stick.
     #[inline(never)]
-    pub(crate) fn balanced_with_grips(
+    pub(crate) fn balanced_in_its_modes(
         &self,
         standing: R,
         position: &S::Position,
@@ -79,7 +81,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
     /// Parameters that hold the forces of frictions which stick, for accelerations and multipliers (N, M) of a state: the part of
     /// M q̈ + Φ_qᵀ λ − Q along their rows.
-    pub fn with_grip_forces(
+    pub fn with_set_valued_forces(
         &self,
         position: &S::Position,
         y: &IntegratorState<R, N, S::States>,
@@ -184,14 +186,14 @@ pub(crate) fn no_rate<R: Real, const N: usize, const M: usize>(
 #[inline(always)]
 pub(crate) fn column<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize, const K: usize>(
     rows: &[SetValuedRow<R, N>; K],
-    grips: &[Grip<R>],
+    modes: &[SetValuedMode<R>],
     index: usize,
 ) -> [R; N] {
     let mut column = rows.get(index).map_or([R::constant(0.0); N], |row| row.gradient);
     if const { S::HAS_FRICTION_ON_CONTACTS } {
-        for (row, grip) in rows.iter().zip(grips) {
+        for (row, mode) in rows.iter().zip(modes) {
             if let Some(on) = row.on.filter(|on| on.contact == index) {
-                column = column.plus(-(grip.direction * on.sliding), &[1.0], [&row.gradient]);
+                column = column.plus(-(mode.direction * on.sliding), &[1.0], [&row.gradient]);
             }
         }
     }
@@ -199,15 +201,15 @@ pub(crate) fn column<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
 }
 
 /// Largest force (N) with which a friction sticks, at the forces of the contacts.
-pub(crate) fn limit<R: Real, const N: usize>(row: &SetValuedRow<R, N>, grips: &[Grip<R>]) -> R {
+pub(crate) fn limit<R: Real, const N: usize>(row: &SetValuedRow<R, N>, modes: &[SetValuedMode<R>]) -> R {
     row.on.map_or(row.limit, |on| {
-        on.sticking * grips.get(on.contact).map_or(R::constant(0.0), |contact| contact.force)
+        on.sticking * modes.get(on.contact).map_or(R::constant(0.0), |contact| contact.force)
     })
 }
 
 /// `true` for a friction on a contact that is open: it has no force.
-pub(crate) fn is_off<R: Real, const N: usize>(row: &SetValuedRow<R, N>, grips: &[Grip<R>]) -> bool {
-    row.on.is_some_and(|on| grips.get(on.contact).is_some_and(|contact| !sticks(contact)))
+pub(crate) fn is_off<R: Real, const N: usize>(row: &SetValuedRow<R, N>, modes: &[SetValuedMode<R>]) -> bool {
+    row.on.is_some_and(|on| modes.get(on.contact).is_some_and(|contact| !sticks(contact)))
 }
 
 /// Solution with the rows held that stick.
@@ -230,12 +232,12 @@ where
 
     fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let zero = R::constant(0.0);
-        let grips = S::grips(self.model.parameters);
-        let mask: [bool; K] = mask(grips);
+        let modes = S::set_valued_modes(self.model.parameters);
+        let mask: [bool; K] = mask(modes);
         let mut answers = [([zero; N], [zero; M]); K];
         for (index, (answer, _)) in answers.iter_mut().zip(&mask).enumerate().filter(|(_, (_, held))| **held)
         {
-            *answer = (self.solve)(&column::<S, R, N, M, K>(rows, grips, index), false);
+            *answer = (self.solve)(&column::<S, R, N, M, K>(rows, modes, index), false);
         }
         let shares = Shares::of(rows, &mask, |row, column| {
             answers.get(column).map_or(zero, |answer| dot(&row.gradient, &answer.0))
@@ -274,7 +276,7 @@ where
 
     fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> S::Parameters {
         let zero = R::constant(0.0);
-        let mask: [bool; K] = mask(S::grips(self.model.parameters));
+        let mask: [bool; K] = mask(S::set_valued_modes(self.model.parameters));
         let scaled = |x: &[R; N]| {
             let mut scaled = *x;
             let scales = self.model.metric.coordinates.iter();
@@ -283,9 +285,9 @@ where
         };
         let mut rows = *rows;
         if const { S::HAS_FRICTION_ON_CONTACTS } {
-            let (whole, grips) = (rows, S::grips(self.model.parameters));
+            let (whole, modes) = (rows, S::set_valued_modes(self.model.parameters));
             for (index, row) in rows.iter_mut().enumerate() {
-                row.gradient = column::<S, R, N, M, K>(&whole, grips, index);
+                row.gradient = column::<S, R, N, M, K>(&whole, modes, index);
                 // The limit of a friction on a contact is known with the force of that.
                 row.limit = if row.on.is_some() { R::constant(f64::INFINITY) } else { row.limit };
             }
@@ -303,8 +305,8 @@ where
             }
             forces = within_limits(&rows, mask, &right, entry);
         }
-        for (grip, force) in S::grips_mut(&mut self.parameters).iter_mut().zip(&forces) {
-            grip.force = *force;
+        for (mode, force) in S::set_valued_modes_mut(&mut self.parameters).iter_mut().zip(&forces) {
+            mode.force = *force;
         }
         self.parameters
     }
@@ -328,14 +330,14 @@ where
 
     fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let (zero, y) = (R::constant(0.0), self.y);
-        let grips = S::grips(self.model.parameters);
-        let mask: [bool; K] = mask(grips);
+        let modes = S::set_valued_modes(self.model.parameters);
+        let mask: [bool; K] = mask(modes);
         let (mut open, mut any) = ([zero; K], false);
-        for ((open, row), grip) in open.iter_mut().zip(rows).zip(grips).filter(|(_, grip)| sticks(grip)) {
+        for ((open, row), mode) in open.iter_mut().zip(rows).zip(modes).filter(|(_, mode)| sticks(mode)) {
             (*open, any) = if self.of_rates {
                 (row.rate, any || row.rate != zero)
             } else {
-                let off = row.place - grip.place;
+                let off = row.place - mode.place;
                 let none = motion::NO_VALUE.of::<R>() * size(&row.gradient, &y.q, row.place);
                 // Written so that NaN is a drift, and named by the one who solves next.
                 (off, any || off != zero && !off.abs().less(none))

@@ -38,16 +38,15 @@ pub(super) fn set_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: u
     trial: &mut S::Parameters,
 ) -> Option<usize> {
     let (mut left, mut slides) = (code, 0);
-    for (grip, _) in S::grips_mut(trial).iter_mut().zip(rest).filter(|(_, rest)| **rest) {
-        grip.direction = R::constant([0.0, 1.0, -1.0].get((left % 3) as usize).copied().unwrap_or(0.0));
-        slides += usize::from(!sticks(grip));
+    for (mode, _) in S::set_valued_modes_mut(trial).iter_mut().zip(rest).filter(|(_, rest)| **rest) {
+        mode.direction = R::constant([0.0, 1.0, -1.0].get((left % 3) as usize).copied().unwrap_or(0.0));
+        slides += usize::from(!sticks(mode));
         left /= 3;
     }
-    let grips = S::grips(trial);
-    let mut modes = rows.iter().zip(grips).zip(rest);
-    let is_none = modes.any(|((row, grip), rest)| {
-        let backwards = grip.direction < R::constant(0.0);
-        row.restitution.is_some() && backwards || *rest && is_off(row, grips) && (backwards || sticks(grip))
+    let modes = S::set_valued_modes(trial);
+    let is_none = rows.iter().zip(modes).zip(rest).any(|((row, mode), rest)| {
+        let backwards = mode.direction < R::constant(0.0);
+        row.restitution.is_some() && backwards || *rest && is_off(row, modes) && (backwards || sticks(mode))
     });
     if is_none {
         return None;
@@ -67,17 +66,17 @@ pub(super) fn follow<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
     changed: Option<usize>,
 ) {
     let mut off = [false; K];
-    off.iter_mut().zip(rows).for_each(|(off, row)| *off = is_off(row, S::grips(trial)));
-    for (grip, (row, (rest, off))) in
-        S::grips_mut(trial).iter_mut().zip(rows.iter().zip(rest.iter().zip(&off)))
+    off.iter_mut().zip(rows).for_each(|(off, row)| *off = is_off(row, S::set_valued_modes(trial)));
+    for (mode, (row, (rest, off))) in
+        S::set_valued_modes_mut(trial).iter_mut().zip(rows.iter().zip(rest.iter().zip(&off)))
     {
         let Some(on) = row.on else { continue };
         if *off {
-            grip.direction = R::constant(1.0);
+            mode.direction = R::constant(1.0);
         } else if !*rest {
-            grip.direction = row.rate.sign();
+            mode.direction = row.rate.sign();
         } else if changed == Some(on.contact) {
-            grip.direction = R::constant(0.0);
+            mode.direction = R::constant(0.0);
         }
     }
 }
@@ -101,21 +100,21 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let Ok(factors) = correction_factors(self, t, position) else { return true };
         let answers = rows.map(|row| factors.solve(&row.gradient, &[zero; M]).0);
         let softness = rows.map(|row| answers.map(|answer| dot(&row.gradient, &answer)));
-        let mut mode = *trial;
+        let mut parameters = *trial;
         for code in 0..codes(rest.iter().filter(|rest| **rest).count()) {
-            if set_modes::<S, R, N, M, K>(rows, rest, code, &mut mode).is_none() {
+            if set_modes::<S, R, N, M, K>(rows, rest, code, &mut parameters).is_none() {
                 continue;
             }
-            let grips = S::grips(&mode);
+            let modes = S::set_valued_modes(&parameters);
             let mut matrix = identity::<R, K>();
             for ((line, soft), _) in
-                matrix.iter_mut().zip(&softness).zip(grips).filter(|(_, grip)| sticks(grip))
+                matrix.iter_mut().zip(&softness).zip(modes).filter(|(_, mode)| sticks(mode))
             {
-                let columns = line.iter_mut().zip(grips).enumerate().filter(|(_, (_, grip))| sticks(grip));
+                let columns = line.iter_mut().zip(modes).enumerate().filter(|(_, (_, mode))| sticks(mode));
                 for (index, (entry, _)) in columns {
-                    let sliding = rows.iter().zip(grips).zip(soft).filter_map(|((row, grip), soft)| {
+                    let sliding = rows.iter().zip(modes).zip(soft).filter_map(|((row, mode), soft)| {
                         let on = row.on.filter(|on| on.contact == index)?;
-                        Some(grip.direction * on.sliding * *soft)
+                        Some(mode.direction * on.sliding * *soft)
                     });
                     *entry = sliding.fold(at(soft, index), |sum, share| sum - share);
                 }

@@ -26,7 +26,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     ) {
         let position = self.position(t, y);
         let lambda = solved.map_or([R::constant(0.0); M], |solved| solved.lambda);
-        let held = solved.map(|solved| self.with_grip_forces(&position, y, (&solved.rate.qd, &lambda)));
+        let held = solved.map(|solved| self.with_set_valued_forces(&position, y, (&solved.rate.qd, &lambda)));
         let parameters = held.as_ref().unwrap_or(self.parameters);
         let margins = Margins { model: self, held: parameters, y, first, values };
         self.mechanism.set_valued_rows(self.parameters, &position, &y.qd, &y.states, &lambda, margins);
@@ -71,21 +71,21 @@ where
     type Output = ();
 
     fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) {
-        let (one, grips) = (R::constant(1.0), S::grips(self.held));
+        let (one, modes) = (R::constant(1.0), S::set_valued_modes(self.held));
         for (place, value) in self.values.iter_mut().enumerate() {
             let (index, side) = ((self.first + place) / SIDES, (self.first + place) % SIDES);
-            let (Some(row), Some(grip)) = (rows.get(index), grips.get(index)) else { return };
-            *value = match (sticks(grip), side) {
-                (true, 0) if row.restitution.is_some() => grip.force,
+            let (Some(row), Some(mode)) = (rows.get(index), modes.get(index)) else { return };
+            *value = match (sticks(mode), side) {
+                (true, 0) if row.restitution.is_some() => mode.force,
                 (_, 1) if row.restitution.is_some() => one,
                 (false, _) if row.restitution.is_some() => {
                     row.place + no_gap(row, &self.y.q, self.model.metric)
                 }
-                _ if is_off(row, grips) => one,
-                (true, 0) => limit(row, grips) - grip.force,
-                (true, _) => limit(row, grips) + grip.force,
+                _ if is_off(row, modes) => one,
+                (true, 0) => limit(row, modes) - mode.force,
+                (true, _) => limit(row, modes) + mode.force,
                 // A speed that is none has not ended.
-                (false, 0) => grip.direction * row.rate + no_rate(row, &self.y.qd, self.model.metric),
+                (false, 0) => mode.direction * row.rate + no_rate(row, &self.y.qd, self.model.metric),
                 (false, _) => one,
             };
         }

@@ -7,30 +7,30 @@ use quote::{quote, quote_spanned};
 
 use crate::emit::rust::code::{block, lets};
 use crate::emit::rust::scope::Scope;
-use crate::equations::Sticking;
+use crate::equations::SetValuedRow;
 use crate::program::Section;
 
 /// Items of `Dynamic` for a text that has such frictions.
 pub fn items(
-    sticking: &[Sticking],
+    rows: &[SetValuedRow],
     section: &Section,
     scope: &Scope<'_>,
     runtime: &TokenStream,
 ) -> TokenStream {
-    let Some(declared) = scope.model.dynamics.as_ref().filter(|_| !sticking.is_empty()) else {
+    let Some(declared) = scope.model.dynamics.as_ref().filter(|_| !rows.is_empty()) else {
         return TokenStream::new();
     };
-    let entries = declared.sticking.iter().map(|friction| {
+    let entries = declared.set_valued.iter().map(|friction| {
         let (name, line) = (&friction.name, quote_spanned!(friction.span=> ::core::line!()));
         quote! { #runtime::Entry { name: #name, unit: "N", line: #line } }
     });
     let (n, m) = (scope.model.coordinates.len(), scope.model.rows.len());
-    let (states, k) = (declared.states.len(), sticking.len());
+    let (states, k) = (declared.states.len(), rows.len());
     let mut text = String::new();
     lets(section, scope, &mut text);
     let _ = writeln!(text, "let mut __rows = [__mbs::dynamics::SetValuedRow::<T, {n}>::new(); {k}];");
-    for (index, row) in sticking.iter().enumerate() {
-        let Sticking { place, rate, gradient, gamma, limit, restitution, ordered, on } = row;
+    for (index, row) in rows.iter().enumerate() {
+        let SetValuedRow { place, rate, gradient, gamma, limit, restitution, ordered, on } = row;
         let some = |value| format!("::core::option::Option::Some({value})");
         let on = on.map(|on| {
             let [coefficient, sliding, sticking] =
@@ -58,20 +58,20 @@ pub fn items(
     }
     let _ = write!(text, "<__See as __mbs::dynamics::WithSetValuedRows<T, {n}>>::at(__see, &__rows)");
     let body = block(&text, runtime);
-    let rigid = sticking.iter().any(|row| row.restitution.is_some());
+    let rigid = rows.iter().any(|row| row.restitution.is_some());
     let rigid = rigid.then(|| quote! { const HAS_RIGID_CONTACTS: bool = true; });
-    let rubs = sticking.iter().any(|row| row.on.is_some());
+    let rubs = rows.iter().any(|row| row.on.is_some());
     let rubs = rubs.then(|| quote! { const HAS_FRICTION_ON_CONTACTS: bool = true; });
     quote! {
         const SET_VALUED: &'static [#runtime::Entry] = &[#(#entries),*];
         #rigid
         #rubs
         #[inline]
-        fn grips(__p: &__Parameters<T>) -> &[#runtime::dynamics::Grip<T>] {
+        fn set_valued_modes(__p: &__Parameters<T>) -> &[#runtime::dynamics::SetValuedMode<T>] {
             &__p.2
         }
         #[inline]
-        fn grips_mut(__p: &mut __Parameters<T>) -> &mut [#runtime::dynamics::Grip<T>] {
+        fn set_valued_modes_mut(__p: &mut __Parameters<T>) -> &mut [#runtime::dynamics::SetValuedMode<T>] {
             &mut __p.2
         }
         fn set_valued_rows<__See: #runtime::dynamics::WithSetValuedRows<T, #n>>(

@@ -47,7 +47,7 @@ where
     }
 
     /// Modes where parameters or inputs have changed.
-    pub(super) fn grip_anew(&mut self) -> Result<(), Failure> {
+    pub(super) fn decide_modes_anew(&mut self) -> Result<(), Failure> {
         if const { !S::HAS_MODES } || !self.stale {
             return Ok(());
         }
@@ -65,20 +65,20 @@ where
     }
 
     /// Takes the modes of the last step.
-    pub(super) fn take_grips(&mut self, parameters: Option<&S::Parameters>) {
+    pub(super) fn take_modes(&mut self, parameters: Option<&S::Parameters>) {
         if const { S::HAS_MODES }
             && let Some(parameters) = parameters
         {
-            self.parameters = Model { parameters, ..self.model() }.gripping(self.parameters);
+            self.parameters = Model { parameters, ..self.model() }.with_modes_of(self.parameters);
         }
     }
 
     /// Modes from the present instant on.
-    pub(super) fn grip(&mut self) -> Result<(), Failure> {
+    pub(super) fn decide_modes(&mut self) -> Result<(), Failure> {
         if const { !S::HAS_MODES } {
             return Ok(());
         }
-        self.grip_anew()?;
+        self.decide_modes_anew()?;
         if self.stale {
             return Ok(());
         }
@@ -123,7 +123,7 @@ where
     pub(super) fn require_parts(&self, part: u32) -> Result<(), Failure> {
         match S::SET_VALUED.first().or(S::EVENTS.first()) {
             Some(friction) if Self::most_slips() <= part => {
-                Err(FailureKind::Chatter { friction, parts: part }.at(self.now.t.to_f64()))
+                Err(FailureKind::Chatter { entry: friction, parts: part }.at(self.now.t.to_f64()))
             }
             _ => Ok(()),
         }

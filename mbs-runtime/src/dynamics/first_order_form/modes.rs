@@ -18,8 +18,8 @@ where
     pub(crate) fn with_all_contacts(&mut self) {
         if const { !S::CONTACTS.is_empty() } {
             let all = *self.model.parameters;
-            let gripping = |parameters| Model { parameters, ..*self.model }.gripping(all);
-            self.parameters = self.parameters.as_ref().map(gripping);
+            let with_modes_of = |parameters| Model { parameters, ..*self.model }.with_modes_of(all);
+            self.parameters = self.parameters.as_ref().map(with_modes_of);
         }
     }
 
@@ -68,7 +68,7 @@ where
         })?;
         let Some(Struck { y: next, parameters, gained }) = struck else { return Ok(false) };
         let of = Model { parameters: &parameters, ..*self.model };
-        self.parameters = self.parameters.map(|parameters| of.gripping(parameters));
+        self.parameters = self.parameters.map(|parameters| of.with_modes_of(parameters));
         (y.y, self.end.y, self.gained) = (next, next, self.gained + gained);
         Ok(true)
     }
@@ -86,9 +86,9 @@ where
             model
                 .decide(t, &y.y, Some(&known), &mut |model| formulation.solve(model, t, &y.y, lambda, counts))
         })?;
-        let Some((grips, solved)) = decided else { return Ok(false) };
-        let of = Model { parameters: &grips, ..*self.model };
-        self.parameters = self.parameters.map(|parameters| of.gripping(parameters));
+        let Some((modes, solved)) = decided else { return Ok(false) };
+        let of = Model { parameters: &modes, ..*self.model };
+        self.parameters = self.parameters.map(|parameters| of.with_modes_of(parameters));
         self.lambda = solved.lambda;
         self.end.solved = solved;
         Ok(true)

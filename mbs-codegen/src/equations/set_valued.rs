@@ -2,13 +2,13 @@
 
 use super::lower::Clock;
 use super::{again, jacobian};
-use crate::model::dynamics::{SetValued, Sticking as Declared};
+use crate::model::dynamics::{SetValued, SetValuedForce as Declared};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, Leaf, NodeId, tangent};
 
 /// A row s̈ = J q̈ − γ on which friction may hold the mechanism.
 #[derive(Debug)]
-pub struct Sticking {
+pub struct SetValuedRow {
     /// s
     pub place: NodeId,
     /// ṡ
@@ -40,10 +40,10 @@ pub struct OnContact {
     pub sticking: NodeId,
 }
 
-impl Sticking {
+impl SetValuedRow {
     /// All of its roots.
     pub fn roots(&self) -> impl Iterator<Item = NodeId> + '_ {
-        let Sticking { place, rate, gradient, gamma, limit, restitution, on, ordered: _ } = self;
+        let SetValuedRow { place, rate, gradient, gamma, limit, restitution, on, ordered: _ } = self;
         let entries = gradient.iter().map(|(_, entry)| *entry);
         let coefficients = on.iter().flat_map(|on| [on.coefficient, on.sliding, on.sticking]);
         let law = [*limit, *restitution];
@@ -52,7 +52,7 @@ impl Sticking {
 
     /// All of its roots, to be replaced.
     pub fn roots_mut(&mut self) -> impl Iterator<Item = &mut NodeId> {
-        let Sticking { place, rate, gradient, gamma, limit, restitution, on, ordered: _ } = self;
+        let SetValuedRow { place, rate, gradient, gamma, limit, restitution, on, ordered: _ } = self;
         let entries = gradient.iter_mut().map(|(_, entry)| entry);
         let law = [limit.as_mut(), restitution.as_mut()];
         let coefficients =
@@ -63,13 +63,13 @@ impl Sticking {
 }
 
 /// Before: the frictions and rigid contacts of the text. After: their rows.
-pub fn sticking(
+pub fn set_valued_rows(
     g: &mut Graph,
     declared: &[Declared],
     of: &impl Fn(Id) -> NodeId,
     clock: &Clock,
     count: usize,
-) -> Vec<Sticking> {
+) -> Vec<SetValuedRow> {
     let mut rows = Vec::new();
     for Declared { along, law, .. } in declared {
         let place = of(*along);
@@ -90,7 +90,7 @@ pub fn sticking(
             sliding: of(on.sliding),
             sticking: of(on.sticking),
         });
-        rows.push(Sticking { place, rate, gradient, gamma, limit, restitution, ordered, on });
+        rows.push(SetValuedRow { place, rate, gradient, gamma, limit, restitution, ordered, on });
     }
     rows
 }
