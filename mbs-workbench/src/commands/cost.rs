@@ -102,7 +102,9 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let mut known = None;
     let blueprints = if is_file(arguments.name()) {
         methods(&arguments.methods)?;
-        vec![Blueprint::study_of_text(&Study::COST, &TextFile::read(arguments.name())?)?]
+        let text = TextFile::read(arguments.name())?;
+        super::functions::require(&text)?;
+        vec![Blueprint::study_of_text(&Study::COST, &text)]
     } else {
         // What is wrong on the command line is said before anything is built.
         let target = Target::find(catalogue, arguments.name())?;
@@ -191,7 +193,7 @@ fn driven(target: &Target) -> CommandError {
 
 impl Arguments {
     /// The mechanism or file.
-    pub(super) fn name(&self) -> &str {
+    pub fn name(&self) -> &str {
         self.name.as_deref().unwrap_or_default()
     }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use mbs_codegen::DeclaredFunction;
 use mbs_runtime::FunctionEntry;
 
 use super::{Forge, ForgeError, not_started, sources};
@@ -130,34 +131,20 @@ pub struct Origin {
 }
 
 impl Blueprint {
-    /// `mbs` for the mechanism of a text.
-    ///
-    /// # Errors
-    /// [`ForgeError::Functions`] where the text calls functions of the caller.
-    pub fn of_text(text: &TextFile) -> Result<Self, ForgeError> {
+    /// `mbs` for the mechanism of a text, whose functions that program takes from its command line.
+    pub fn of_text(text: &TextFile) -> Self {
         Self::for_text(text, "", "", |module| format!("mbs_workbench::program(&[{module}::CARD])"))
     }
 
-    /// A study of the mechanism of a text.
-    ///
-    /// # Errors
-    /// As [`of_text`](Self::of_text).
-    pub fn study_of_text(study: &Study, text: &TextFile) -> Result<Self, ForgeError> {
-        let item = study.item((&format!("{}::default()", text.type_name()), &text.type_name()), &[]);
+    /// A study of the mechanism of a text, as [`of_text`](Self::of_text).
+    pub fn study_of_text(study: &Study, text: &TextFile) -> Self {
+        let own = text.type_name();
+        let item = study.item((&constructor(&own, &text.functions), &own), &[]);
         Self::for_text(text, study.suffix, &item, |module| study.call(&format!("{module}::")))
     }
 
     /// A program for the mechanism of a text; `items` stand beside its card, `body` is that of `main`.
-    fn for_text(
-        text: &TextFile,
-        suffix: &str,
-        items: &str,
-        body: impl FnOnce(&str) -> String,
-    ) -> Result<Self, ForgeError> {
-        if !text.functions.is_empty() {
-            let functions = text.functions.clone();
-            return Err(ForgeError::Functions { mechanism: text.type_name(), functions });
-        }
+    fn for_text(text: &TextFile, suffix: &str, items: &str, body: impl FnOnce(&str) -> String) -> Self {
         let plain = snake_case(&text.name);
         // Words of Rust name no module.
         let is_word = syn::parse_str::<syn::Ident>(&plain).is_err();
@@ -165,7 +152,7 @@ impl Blueprint {
         let lines = text.source.chars().take_while(|c| *c == '\n').count();
         let (before, source) = text.source.split_at(lines);
         let prefix = format!("mod {module} {{ ::mbs_runtime::mechanism! {{ ");
-        let card = format!("::mbs_workbench::card!({}::default())", text.type_name());
+        let card = format!("::mbs_workbench::card!({})", constructor(&text.type_name(), &text.functions));
         // The user's lines keep their numbers, so nothing stands above them.
         let main = format!(
             "{before}{prefix}{source}\n}} pub const CARD: ::mbs_workbench::card::Card = {card}; {items} }}\n\n{HEAD}\n\n\
@@ -173,7 +160,7 @@ impl Blueprint {
             body(&module)
         );
         let shifted = (lines + 1, prefix.chars().count());
-        Ok(Blueprint {
+        Blueprint {
             name: format!("{}{suffix}", snake_case(&text.type_name())),
             manifest: dependencies(&[]),
             main,
@@ -181,7 +168,7 @@ impl Blueprint {
             is_closed: true,
             units: None,
             is_measured: false,
-        })
+        }
     }
 
     /// A study of many texts in one program: name of each and of its type, and its text. The program takes a list of names, cards and
@@ -297,11 +284,14 @@ impl Blueprint {
 
     /// A program that measures the scenes called `scenes` of the mechanism called `mechanism` in `text`, for the `round`th time.
     pub fn of_scenes(mechanism: &str, text: &str, scenes: &[String], round: usize) -> Self {
+        // A scene may be left without a function that another one calls: all have those of the text.
+        let functions = mbs_codegen::outline(text).map_or_else(|_| Vec::new(), |outline| outline.functions);
         let entries: String = scenes
             .iter()
             .map(|scene| {
+                let made = constructor(&format!("{mechanism}{scene}"), &functions);
                 format!(
-                    "    ({scene:?}, |values| ::mbs_workbench::erased::scene_runs::scene_runs({mechanism}{scene}::default(), values)),\n"
+                    "    ({scene:?}, |values| ::mbs_workbench::erased::scene_runs::scene_runs({made}, values)),\n"
                 )
             })
             .collect();
@@ -360,6 +350,32 @@ fn module_of(constructor: &str) -> Option<String> {
         names.iter().take(names.len().saturating_sub(1)).take_while(is_module).map(String::as_str).collect();
     let root = if path.path.leading_colon.is_some() { "::" } else { "" };
     (!modules.is_empty()).then(|| root.to_string() + &modules.join("::"))
+}
+
+/// The call that makes a mechanism of type `own`, with the functions that its text declares from the program's command line.
+fn constructor(own: &str, functions: &[DeclaredFunction]) -> String {
+    if functions.is_empty() {
+        return format!("{own}::default()");
+    }
+    let mut arguments: Vec<(&str, Vec<String>)> = Vec::new();
+    for function in functions {
+        let DeclaredFunction { name, unit, argument_unit, continuity, period } = function;
+        let period = period.map_or_else(|| "None".to_string(), |period| format!("Some({period:?})"));
+        let call = format!(
+            "::mbs_workbench::given_function(({name:?}, {unit:?}, {argument_unit:?}, {continuity}, {period}))"
+        );
+        let array = name.split('[').next().unwrap_or_default();
+        match arguments.last_mut().filter(|(known, _)| *known == array) {
+            Some((_, calls)) => calls.push(call),
+            None => arguments.push((array, vec![call])),
+        }
+    }
+    let is_array = |name: &str| functions.iter().all(|function| function.name != name);
+    let argument = |(name, calls): &(&str, Vec<String>)| match is_array(name) {
+        true => format!("[{}]", calls.join(", ")),
+        false => calls.concat(),
+    };
+    format!("{own}::new({})", arguments.iter().map(argument).collect::<Vec<_>>().join(", "))
 }
 
 /// The functions of the caller that have two derivatives, by their names: an item of Rust.

@@ -51,13 +51,6 @@ pub enum ForgeError {
         /// Their folder.
         path: PathBuf,
     },
-    /// Functions of the text, which only a crate can give.
-    Functions {
-        /// The mechanism.
-        mechanism: String,
-        /// The functions.
-        functions: Vec<String>,
-    },
     /// The constructor of a card does not begin with a library.
     NoLibrary {
         /// The constructor.
@@ -236,12 +229,6 @@ impl fmt::Display for ForgeError {
                 "the sources that `mbs` was built from are no longer in {}\n\
                  install it again from where they are: `cargo install --locked --path mbs-workbench`",
                 path.display()
-            ),
-            ForgeError::Functions { mechanism, functions } => write!(
-                f,
-                "`{mechanism}` calls functions that a text cannot give: {}\n\
-                 declare it in a crate (`mbs new NAME`) and give them there: `card!({mechanism}::new(…))`",
-                functions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
             ),
             ForgeError::NoLibrary { constructor } => write!(
                 f,
