@@ -57,7 +57,7 @@ use model::scene::Scene;
 use model::scenes::Scenes;
 pub use outline::declarations::Declaration;
 pub use outline::effects::{EffectGroups, effects, statement as scene_statement};
-pub use outline::{Call, Outline, Variable, calls};
+pub use outline::{Call, DeclaredFunction, Outline, Variable, calls};
 pub use picture::picture;
 use proc_macro2::TokenStream;
 pub use program::Operations;

@@ -11,19 +11,34 @@ use proc_macro2::{TokenStream, TokenTree};
 use crate::diagnostics::{Diagnostic, Fault};
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
-use crate::model::{Model, VariableKind};
+use crate::model::{Function, InArray, Model, VariableKind};
 use crate::syntax::Text;
 use crate::syntax::unreadable::{Unreadable, span_at, unreadable_call};
 
 /// Names that a text without faults declares.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
     /// Name of the mechanism.
     pub name: String,
     /// Names of its scenes; none where it declares none.
     pub scenes: Vec<String>,
-    /// Names of the functions that the caller gives.
-    pub functions: Vec<String>,
+    /// Functions that the caller gives, in the order of `new`; each one of an array.
+    pub functions: Vec<DeclaredFunction>,
+}
+
+/// A function that the caller gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeclaredFunction {
+    /// As the text calls it: `lift`, or `lift[0]` of an array.
+    pub name: String,
+    /// Coherent unit of the value.
+    pub unit: String,
+    /// Coherent unit of the argument.
+    pub argument_unit: String,
+    /// Number of continuous derivatives that the text counts on.
+    pub continuity: u8,
+    /// Period, in the unit of the argument.
+    pub period: Option<f64>,
 }
 
 /// A parameter or input of a scene.
@@ -131,8 +146,24 @@ pub(crate) fn names(text: &Text, scenes: &Scenes) -> Outline {
     Outline {
         name: text.header.label(),
         scenes: scenes.scenes.iter().filter_map(Scene::label).map(str::to_owned).collect(),
-        functions: scenes.shared.functions.iter().map(|function| function.name.text.clone()).collect(),
+        functions: scenes.shared.functions.iter().flat_map(declared_functions).collect(),
     }
+}
+
+/// A function, or those of the array that begins with it.
+fn declared_functions(function: &Function) -> Vec<DeclaredFunction> {
+    let length = function.array.map_or(1, |array| array.length);
+    let one = |index: usize| {
+        let array = function.array.map(|array| InArray { index, ..array });
+        DeclaredFunction {
+            name: Function { array, ..function.clone() }.label(),
+            unit: function.unit.clone(),
+            argument_unit: function.argument_unit.clone(),
+            continuity: function.continuity,
+            period: function.period,
+        }
+    };
+    (0..length).map(one).collect()
 }
 
 /// Before: a model. After: its parameters and inputs.

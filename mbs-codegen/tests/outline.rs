@@ -34,15 +34,22 @@ fn texts_stand_at_their_own_lines_and_columns() {
 
 #[test]
 fn scenes_functions_and_parameters_are_named() {
-    let text = "pub mechanism Cam; param r: m = 30mm; param offset: [m; 2] = [1mm, 0]; function lift: m(rad), C3; coord y: m; \
-                constraint c { y == r + lift(0rad) + offset[0]; } \
+    let text = "pub mechanism Cam; param r: m = 30mm; param offset: [m; 2] = [1mm, 0]; function lift: m(rad), C3, periodic TAU; function push: [N; 2](m), C1; coord y: m; \
+                constraint c { y == r + lift(0rad) + offset[0]; } out n: N = push[0](y) + push[1](y); \
                 effect one { param a: rad = 1deg; } effect two {} scene First = one; scene Second = two;";
     let found = outline(text);
     let names = |list: &[&str]| list.iter().map(|name| name.to_string()).collect::<Vec<_>>();
     match found {
         Ok(Outline { name, scenes, functions }) => {
             assert_eq!(name, "Cam");
-            assert_eq!((scenes, functions), (names(&["First", "Second"]), names(&["lift"])));
+            assert_eq!(scenes, names(&["First", "Second"]));
+            let called: Vec<_> = functions
+                .iter()
+                .map(|f| (f.name.as_str(), f.unit.as_str(), f.argument_unit.as_str(), f.continuity, f.period))
+                .collect();
+            let turn = Some(core::f64::consts::TAU);
+            let push = |name| (name, "N", "m", 1, None);
+            assert_eq!(called, [("lift", "m", "rad", 3, turn), push("push[0]"), push("push[1]")]);
         }
         Err(faults) => panic!("{faults:?}"),
     }

@@ -33,6 +33,10 @@ struct Arguments {
     /// Print the results as one JSON document
     #[arg(long, global = true)]
     json: bool,
+    /// Function of a text in a file: a CSV table, with units as `lift.csv:deg,mm` or in its header, or a law as `mbs cam` takes it
+    // Read again from the command line, by this program and by the one that is built for the file.
+    #[arg(long, global = true, value_name = "NAME=FILE.csv|LAW", allow_hyphen_values = true)]
+    function: Vec<String>,
 }
 
 #[derive(Subcommand)]
@@ -130,6 +134,21 @@ impl Command {
         }
     }
 
+    /// `true` if the command is about a text in a file, and does without a program of it or builds one of its own.
+    fn is_about_a_file(&self) -> bool {
+        match self {
+            Command::Print(of) => is_file(of.chosen.name()),
+            Command::Latex(of) => is_file(of.chosen.name()),
+            Command::Structure(of) => is_file(of.chosen.name()),
+            Command::Dof(of) => is_file(of.chosen.name()),
+            Command::Cost(of) => is_file(of.name()),
+            Command::Effects(of) => is_file(&of.name),
+            Command::HardCases(of) => of.name.as_deref().is_some_and(is_file),
+            Command::Watch(of) => is_file(of.selection.name()),
+            _ => false,
+        }
+    }
+
     /// The file that the command line names in place of a mechanism, where the command needs code for it.
     fn file_to_build(&self) -> Option<&str> {
         let chosen = |chosen: &'_ commands::chosen::Chosen, is_text: bool| !(is_text && chosen.is_plain());
@@ -177,7 +196,7 @@ const STACK: usize = 64 << 20;
 /// or the list of mechanisms does not make sense.
 pub fn program(cards: &[Card]) -> ExitCode {
     let catalogue = Catalogue { cards };
-    let Arguments { command, json } = match Arguments::try_parse() {
+    let Arguments { command, json, .. } = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
             let typed = typed_command();
@@ -260,14 +279,16 @@ fn study_program(
 ) -> ExitCode {
     let catalogue = Catalogue { cards };
     match Arguments::try_parse() {
-        Ok(Arguments { command: Some(command), json }) if command.schema() == name => on_large_stack(|| {
-            let mut stdout = io::stdout().lock();
-            let mut out = Output::new(&mut stdout, json.then_some(name));
-            let Some(found) = study(&command, &catalogue, &mut out) else { return ExitCode::FAILURE };
-            let ended = out.end(found.as_ref().err());
-            let code = found.unwrap_or_else(|error| report(&error));
-            ended.map_or_else(|error| report(&CommandError::Output(error)), |()| code)
-        }),
+        Ok(Arguments { command: Some(command), json, .. }) if command.schema() == name => {
+            on_large_stack(|| {
+                let mut stdout = io::stdout().lock();
+                let mut out = Output::new(&mut stdout, json.then_some(name));
+                let Some(found) = study(&command, &catalogue, &mut out) else { return ExitCode::FAILURE };
+                let ended = out.end(found.as_ref().err());
+                let code = found.unwrap_or_else(|error| report(&error));
+                ended.map_or_else(|error| report(&CommandError::Output(error)), |()| code)
+            })
+        }
         Ok(_) => report(&CommandError::Usage(format!("this program has the command `{name}` alone"))),
         Err(error) => error.exit(),
     }
@@ -389,6 +410,9 @@ fn dispatch(
     }
     if let Some(file) = command.as_ref().and_then(Command::file_to_build) {
         return commands::of_file::run(catalogue, file, None).map(RunResult::Elsewhere);
+    }
+    if !is_started() && !command.as_ref().is_some_and(Command::is_about_a_file) {
+        commands::functions::refuse_without_file()?;
     }
     let analysis = |of: Analysis, out: &mut Output| commands::run::run(catalogue, &of, out);
     match command {

@@ -53,3 +53,5 @@ pub mod verify;
 
 #[cfg(feature = "program")]
 pub use command_line::{cost_program, effects_program, hard_cases_program, hard_cases_program_list, program};
+#[cfg(feature = "program")]
+pub use commands::functions::{GivenFunction, given_function};

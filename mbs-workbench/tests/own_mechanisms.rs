@@ -82,7 +82,7 @@ fn a_file_is_read_without_a_build_and_says_what_the_built_mechanism_says() {
 }
 
 #[test]
-fn several_mechanisms_of_a_file_are_listed_and_one_with_functions_is_referred_to_a_crate() {
+fn several_mechanisms_of_a_file_are_listed_and_one_with_functions_asks_for_them() {
     let file = format!("{}/examples/wiper.rs", env!("CARGO_MANIFEST_DIR"));
     let failed = |arguments: &[&str], code: i32| {
         let output = wiper(arguments);
@@ -92,10 +92,87 @@ fn several_mechanisms_of_a_file_are_listed_and_one_with_functions_is_referred_to
     };
     let said = failed(&["run", &file], 2);
     assert!(said.contains(&format!("name one:\n  {file}:Wiper\n  {file}:Follower\n")), "{said}");
-    let said = failed(&["run", &format!("{file}:Follower")], 1);
-    assert!(said.contains("`lift`") && said.contains("mbs new NAME"), "{said}");
+    let said = failed(&["run", &format!("{file}:Follower")], 2);
+    assert!(said.contains("--function lift=FILE.csv") && said.contains("m over rad"), "{said}");
     let said = failed(&["compare", &format!("{file}:Wiper")], 2);
     assert!(said.contains("name one of `mbs list`"), "{said}");
+}
+
+#[test]
+fn functions_of_a_file_are_checked_before_anything_is_built() {
+    let folder = scratch("given-functions");
+    fs::create_dir_all(&folder).expect("a folder");
+    let path = |name: &str, text: &str| {
+        let path = folder.join(name);
+        fs::write(&path, text).expect("a file");
+        path.display().to_string()
+    };
+    let text = "pub mechanism Cam; function lift: [m; 2](rad), C3, periodic TAU; function push: N(m), C3; coord phi: rad; \
+                coord y: [m; 2]; drive motor: phi == t*1 [rad/s]; \
+                constraint c { for i in 0..2 { y[i] == lift[i](phi); } } out f: N = push(y[0]);";
+    let file = path("cam.mbs", text);
+    let bad = path("bad.csv", "angle (deg),lift (mm)\n0,1\n5,x\n");
+    let short = path("short.csv", "angle (deg),lift (mm)\n0,1\n5,2\n10,1\n");
+    let plain = path("plain.csv", "0,1\n1,2\n2,4\n");
+    let law = "4567 --lift 8mm --rise 75deg";
+    let said = |functions: &[String], code: i32| {
+        let options = functions.iter().flat_map(|function| ["--function", function.as_str()]);
+        let words: Vec<&str> = ["run", file.as_str()].into_iter().chain(options).collect();
+        failure(&words, code)
+    };
+    let of = |name: &str, form: &str| format!("{name}={form}");
+    let both = [of("lift[0]", law), of("lift[1]", law)];
+    let cases: [(Vec<String>, i32, &str); 15] = [
+        (vec![], 2, "--function lift[0]=FILE.csv --function lift[1]=FILE.csv --function push=FILE.csv"),
+        (both.to_vec(), 2, "\n  push: N over m, 3 continuous derivatives\n"),
+        (vec![of("lft[0]", law)], 2, "did you mean `lift[0]`?\nknown: lift[0], lift[1], push"),
+        (vec![of("lift", law)], 2, "known: lift[0], lift[1], push"),
+        (vec![both[0].clone(), both[0].clone()], 2, "is given 2 times"),
+        (vec!["lift[0]".to_string()], 2, "write name and table or law"),
+        (
+            vec![of("lift[0]", &bad), both[1].clone(), of("push", &plain)],
+            1,
+            "bad.csv: line 3, column 2: `x` is not",
+        ),
+        (
+            vec![of("lift[0]", &short), both[1].clone(), of("push", &plain)],
+            1,
+            "short.csv: line 4, column 1: the table ends",
+        ),
+        (
+            vec![of("lift[0]", "cyclod"), both[1].clone(), of("push", &plain)],
+            2,
+            "did you mean the law `cycloid`?",
+        ),
+        (
+            vec![of("lift[0]", "cycloid --lift 8mm --rise 75deg"), both[1].clone(), of("push", &plain)],
+            2,
+            "2 continuous derivatives, and the text counts on 3",
+        ),
+        (
+            vec![of("lift[0]", "4567 --lift 8mm"), both[1].clone(), of("push", &plain)],
+            2,
+            "needs `--rise 90deg`",
+        ),
+        ([&both[..], &[of("push", law)]].concat(), 2, "`push` is in N over m"),
+        (
+            [&both[..], &[of("push", &format!("{plain}:mm,s"))]].concat(),
+            1,
+            "the columns are s over mm, and the text declares N over m",
+        ),
+        ([&both[..], &[of("push", &format!("{plain}:mm,Newtons"))]].concat(), 2, "`Newtons`"),
+        ([&both[..], &[of("push", &format!("{plain}:mm,N"))]].concat(), 2, "declare `C2`, or a period"),
+    ];
+    for (functions, code, words) in cases {
+        let found = said(&functions, code);
+        assert!(found.contains(words), "{functions:?}: {found}");
+    }
+    // Of a mechanism of the list, and in a text without functions.
+    let found = failure(&["run", "cam", "--function", &both[0]], 2);
+    assert!(found.contains("from its crate"), "{found}");
+    let file = path("bar.mbs", "pub mechanism Bar; coord phi: rad; drive motor: phi == t*1 [rad/s];");
+    let found = failure(&["run", &file, "--function", &both[0]], 2);
+    assert!(found.contains("`Bar` calls no function `lift[0]`\nit calls none"), "{found}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use mbs_runtime::driver::reach;
+use mbs_runtime::driver::{Bounded, nearest_foot, reach};
 use mbs_runtime::{Failure, FailureKind, Function, Stepper, mechanism};
 
 /// R = 30 + a cos 2w + b cos 3w (mm).
@@ -14,6 +14,15 @@ struct Waves {
 }
 
 impl Waves {
+    /// Reach inside and outside, by the largest third derivative.
+    fn reach(self) -> [f64; 2] {
+        reach(&self.bounded()).expect("a reach")
+    }
+
+    fn bounded(self) -> Bounded<Self> {
+        Bounded { function: self, third: 1e-3 * (8.0 * self.second.abs() + 27.0 * self.third.abs()) }
+    }
+
     fn radius(&self, w: f64) -> f64 {
         1e-3 * (30.0 + self.second * (2.0 * w).cos() + self.third * (3.0 * w).cos())
     }
@@ -94,7 +103,7 @@ fn start(circling: Circling<Waves>) -> Result<Stepper<Circling<Waves>, f64, 2>, 
 #[test]
 fn distances_to_feet_are_the_least_ones() {
     let cam = Waves { second: 3.0, third: 1.0 };
-    let [inside, outside] = reach(&cam);
+    let [inside, outside] = cam.reach();
     // Outside, inside, and across the curve.
     for (far, breath) in [(0.045, 0.002), (0.022, 0.001), (0.031, 0.004)] {
         let bound = inside.min(outside);
@@ -109,6 +118,12 @@ fn distances_to_feet_are_the_least_ones() {
             largest = largest.max((found[0].value - distance).abs());
             first_order = first_order.max((found[3].value - distance).abs());
             let turns = (stepper.q()[1] - foot) / TAU;
+            if k % 100 == 0 {
+                let r = circling.far + circling.breath * (7.0 * stepper.t()).sin();
+                let (y, x) = (circling.from - circling.pace * stepper.t() - 3.0 * stepper.t()).sin_cos();
+                let bounded = nearest_foot(&cam.bounded(), [r * x, r * y]).expect("one foot is the nearest");
+                assert!((bounded.distance - distance).abs() < 1e-15, "{bounded:?} {distance}");
+            }
             assert!((turns - turns.round()).abs() < 1e-7, "{k}: {} {foot}", stepper.q()[1]);
         }
         println!(
@@ -146,7 +161,7 @@ fn moved_across(bound: f64) -> (f64, Option<(f64, Failure)>) {
 
 #[test]
 fn a_foot_beyond_the_reach_is_refused_before_another_one_is_nearer() {
-    let [inside, _] = reach(&WAIST);
+    let [inside, _] = WAIST.reach();
     let is_reach = |failure: Failure| matches!(failure.kind, FailureKind::BeyondLimit { limit, .. } if limit.name == "w_reach");
     // A bound beyond the reach, which nothing backs, keeps the foot that the motion began with.
     let (wrong, refused) = moved_across(1.0);

@@ -9,6 +9,7 @@ export async function study(page) {
     const names = await page.$$eval('#legend button', buttons => buttons.map(button => button.textContent));
     assert.ok(names.length >= 3, 'at least three curves');
     assert.match(await page.$eval('#sentence', element => element.textContent), /^\d(\.\d)?e-\d+: /, 'the choice in one sentence');
+    assert.ok(await page.$eval('#kinematics-panel', panel => panel.hidden), 'sines are compared in motions from drives');
     const shown = await page.$eval('#legend button:not(.off)', button => button.textContent);
     const count = await spots(page, shown);
     assert.ok(count > 2, 'a curve has points');

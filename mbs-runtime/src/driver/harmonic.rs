@@ -2,6 +2,7 @@
 
 use crate::driver::SMOOTH;
 use crate::mechanism::function::Function;
+use crate::scalar::interval::Interval;
 use crate::scalar::number::Scalar;
 
 /// `a + b sin(c t − d)`.
@@ -45,5 +46,9 @@ impl<T: Scalar> Function<T> for Harmonic {
             *value = T::constant(self.offset) + *value;
         }
         jet
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        Some(self.jet(Interval::between(from, to)))
     }
 }

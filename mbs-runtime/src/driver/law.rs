@@ -2,7 +2,9 @@
 
 use core::f64::consts::TAU;
 
+use crate::driver::enclosures::{Union, centred};
 use crate::driver::piecewise::{distance, each, taylor};
+use crate::scalar::interval::Interval;
 use crate::scalar::number::{Real, Scalar};
 
 /// A motion law from 0 to 1 with s(u) + s(1 − u) = 1, at rest at both ends.
@@ -13,6 +15,8 @@ pub trait Law {
     const ORDER: usize;
 
     /// s and its first `K` − 1 derivatives; asked for with 0 ≤ u ≤ 1/2 alone, up to rounding.
+    ///
+    /// Intervals of u are asked for too, so pieces are chosen by [`less`](Scalar::less) and [`select`](Scalar::select) alone.
     fn first_half<T: Scalar, const K: usize>(u: T) -> [T; K];
 }
 
@@ -98,4 +102,48 @@ pub(super) fn jet<L: Law, T: Scalar, const K: usize>(x: T, stretch: impl Fn(f64)
         *value = T::select(late, to, from) + *value;
     }
     jet
+}
+
+/// Bounds of value and `K` − 1 derivatives of a stretch between two arguments within it.
+pub(super) fn enclosure<L: Law, const K: usize>(
+    stretch: Stretch,
+    [from, to]: [f64; 2],
+) -> [Interval<f64>; K] {
+    let number = Interval::of;
+    let mut union = Union::default();
+    let scaled = |jet: [Interval<f64>; K], is_late: bool| {
+        let mut factor = number(stretch.rise);
+        let mut jet = jet;
+        for (order, derivative) in jet.iter_mut().enumerate() {
+            let scaled = *derivative * factor;
+            *derivative = if is_late && order % 2 == 0 { -scaled } else { scaled };
+            factor = factor * number(stretch.rate);
+        }
+        if let Some(value) = jet.first_mut() {
+            let base = number(stretch.from);
+            *value = *value + if is_late { base + number(stretch.rise) } else { base };
+        }
+        jet
+    };
+    if stretch.rate == 0.0 {
+        let mut jet = [number(0.0); K];
+        if let Some(value) = jet.first_mut() {
+            *value = number(stretch.from);
+        }
+        return jet;
+    }
+    let share = |x: f64| (number(x) - number(stretch.origin)) * number(stretch.rate);
+    let (low, high) = (share(from).low().clamp(0.0, 1.0), share(to).high().clamp(0.0, 1.0));
+    let half = |low: f64, high: f64| {
+        let at = |u: Interval<f64>| L::first_half::<Interval<f64>, K>(u);
+        centred(at, low, high)
+    };
+    if low <= 0.5 {
+        union.add(scaled(half(low, high.min(0.5)), false));
+    }
+    if high >= 0.5 {
+        let mirrored = number(1.0) - Interval::between(low.max(0.5), high);
+        union.add(scaled(half(mirrored.low(), mirrored.high()), true));
+    }
+    union.bounds().unwrap_or([Interval::between(f64::NEG_INFINITY, f64::INFINITY); K])
 }

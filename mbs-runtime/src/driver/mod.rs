@@ -20,9 +20,13 @@
 //! outputs.
 
 pub(crate) mod basis;
+pub(crate) mod bounded;
 pub(crate) mod cubic_fit;
 pub(crate) mod cubic_spline;
+pub(crate) mod curve_bounds;
+pub(crate) mod enclosures;
 pub(crate) mod error;
+pub(crate) mod foot;
 pub(crate) mod harmonic;
 pub(crate) mod law;
 pub(crate) mod periodic_quintic;
@@ -37,15 +41,18 @@ pub(crate) mod table;
 pub(crate) mod trapezoidal;
 pub(crate) mod triangle;
 
+pub use bounded::Bounded;
 pub use cubic_fit::{CubicRow, End, fit_cubic};
 pub use cubic_spline::CubicSpline;
+pub use enclosures::centred;
 pub use error::{FitError, LawError};
+pub use foot::{Foot, FootError, nearest_foot};
 pub use harmonic::Harmonic;
 pub use law::{Cycloid, Law, Polynomial345, Polynomial4567};
 pub use periodic_quintic::PeriodicQuintic;
 pub use polynomial::{Cubic, Polynomial};
 pub use quintic_fit::{QuinticRow, fit_periodic_quintic};
-pub use reach::reach;
+pub use reach::{ReachError, reach};
 pub use rise::Rise;
 pub use segments::{Segment, Segments};
 pub use table::Table;

@@ -4,6 +4,7 @@ use crate::driver::error::FitError;
 use crate::driver::quintic_fit::{QuinticRow, fit_periodic_quintic};
 use crate::driver::table::Table;
 use crate::mechanism::function::Function;
+use crate::scalar::interval::Interval;
 use crate::scalar::number::Scalar;
 
 /// A periodic quintic spline with `P` knots, four times continuously differentiable: a measured cam.
@@ -83,5 +84,9 @@ impl<T: Scalar, const P: usize> Function<T> for PeriodicQuintic<P> {
 
     fn breakpoint_after(&self, x: f64) -> Option<f64> {
         Function::<T>::breakpoint_after(&self.table(), x)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        Function::<T>::enclosure(&self.table(), from, to)
     }
 }

@@ -1,8 +1,10 @@
 //! Polynomials.
 
 use crate::driver::SMOOTH;
+use crate::driver::enclosures::of_polynomial;
 use crate::driver::piecewise::taylor;
 use crate::mechanism::function::Function;
+use crate::scalar::interval::Interval;
 use crate::scalar::number::Scalar;
 
 /// `a₀ + a₁ t + a₂ t² + …`, `C` coefficients, the constant first.
@@ -28,5 +30,9 @@ impl<T: Scalar, const C: usize> Function<T> for Polynomial<C> {
     #[inline]
     fn jet<const K: usize>(&self, x: T) -> [T; K] {
         taylor(self.coefficients.map(T::constant), x)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        Some(of_polynomial(&self.coefficients, Interval::between(from, to)))
     }
 }

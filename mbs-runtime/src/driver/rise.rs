@@ -2,9 +2,11 @@
 
 use core::marker::PhantomData;
 
+use crate::driver::enclosures::{Union, within_periods};
 use crate::driver::error::LawError;
-use crate::driver::law::{Law, Stretch, jet};
+use crate::driver::law::{Law, Stretch, enclosure, jet};
 use crate::mechanism::function::Function;
+use crate::scalar::interval::Interval;
 use crate::scalar::number::Scalar;
 
 /// A motion from one height to another by the law `L`; rest before and after.
@@ -68,5 +70,23 @@ impl<T: Scalar, L: Law> Function<T> for Rise<L> {
 
     fn breakpoint_after(&self, x: f64) -> Option<f64> {
         [self.start, self.start + self.duration].into_iter().find(|place| x < *place)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        let [from, to] = within_periods([from, to], self.start, None)?;
+        let end = self.start + self.duration;
+        let mut union = Union::default();
+        if from <= self.start {
+            union.add(enclosure::<L, K>(self.stretch(f64::NEG_INFINITY), [from, to]));
+        }
+        if from <= end && self.start <= to {
+            let rise = self.to - self.from;
+            let moving = Stretch { origin: self.start, rate: 1.0 / self.duration, from: self.from, rise };
+            union.add(enclosure::<L, K>(moving, [from.max(self.start), to.min(end)]));
+        }
+        if end <= to {
+            union.add(enclosure::<L, K>(self.stretch(f64::INFINITY), [from, to]));
+        }
+        union.bounds()
     }
 }

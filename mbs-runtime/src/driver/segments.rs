@@ -2,10 +2,12 @@
 
 use core::marker::PhantomData;
 
+use crate::driver::enclosures::{Union, within_periods};
 use crate::driver::error::LawError;
-use crate::driver::law::{Law, Stretch, jet};
+use crate::driver::law::{Law, Stretch, enclosure, jet};
 use crate::driver::piecewise::turns;
 use crate::mechanism::function::Function;
+use crate::scalar::interval::Interval;
 use crate::scalar::number::Scalar;
 
 /// A part of a cam law that ends at an argument.
@@ -124,5 +126,22 @@ impl<T: Scalar, L: Law, const S: usize> Function<T> for Segments<L, S> {
         let places =
             |turn: f64| self.stretches.iter().map(move |stretch| stretch.origin + turn * self.period);
         [turn - 1.0, turn, turn + 1.0].into_iter().flat_map(places).find(|place| x < *place)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        let [from, to] = within_periods([from, to], self.start, Some(self.period))?;
+        let mut union = Union::default();
+        for offset in [0.0, self.period] {
+            for (j, stretch) in self.stretches.iter().enumerate() {
+                let next = self.stretches.get(j.saturating_add(1)).map(|next| next.origin);
+                let end = next.unwrap_or(self.start + self.period) + offset;
+                let origin = stretch.origin + offset;
+                if origin <= to && from <= end {
+                    let moved = Stretch { origin, ..*stretch };
+                    union.add(enclosure::<L, K>(moved, [from.max(origin), to.min(end)]));
+                }
+            }
+        }
+        union.bounds()
     }
 }

@@ -2,9 +2,11 @@
 
 use core::array::from_fn;
 
+use crate::driver::enclosures::{Union, of_polynomial, within_periods};
 use crate::driver::piecewise::{distance, each, floor, taylor};
 use crate::linear_algebra::parts::at;
 use crate::mechanism::function::Function;
+use crate::scalar::interval::Interval;
 use crate::scalar::number::{Real, Scalar};
 
 /// Polynomials of `C` coefficients between knots, `C` − 2 times continuously differentiable: a spline.
@@ -132,5 +134,39 @@ impl<T: Scalar, const C: usize> Function<T> for Table<'_, C> {
             let passed = self.knots.partition_point(|knot| knot + shift <= x);
             self.knots.get(passed).map(|knot| knot + shift).filter(|place| x < *place)
         })
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        let first = self.knots.first().copied()?;
+        let [from, to] = within_periods([from, to], first, self.period)?;
+        let mut union = Union::default();
+        if let (None, true, Some(piece)) = (self.period, from < first, self.pieces.first()) {
+            let without_highest = from_fn(|j| if C == j + 1 { 0.0 } else { at(piece, j) });
+            union.add(of_polynomial::<C, K>(
+                &without_highest,
+                Interval::between(from - first, to.min(first) - first),
+            ));
+        }
+        let begun = searched(self.knots, from);
+        for offset in [0.0, self.period.unwrap_or(0.0)] {
+            let skipped = if offset > 0.0 { 0 } else { begun };
+            for (j, (knot, piece)) in self.knots.iter().zip(self.pieces).enumerate().skip(skipped) {
+                let end = match (self.knots.get(j.saturating_add(1)), self.period) {
+                    (Some(next), _) => *next,
+                    (None, Some(period)) => first + period,
+                    (None, None) => f64::INFINITY,
+                };
+                // Rounding of the places is within the margin of `from` and `to`.
+                let [start, end] = [knot + offset, end + offset];
+                if start <= to && from <= end {
+                    let local = Interval::between(from.max(start) - start, to.min(end) - start);
+                    union.add(of_polynomial::<C, K>(piece, local));
+                }
+            }
+            if self.period.is_none() {
+                break;
+            }
+        }
+        union.bounds()
     }
 }

@@ -1,8 +1,10 @@
 //! Motion between two rests with bounded speed and acceleration.
 
+use crate::driver::enclosures::{Union, of_polynomial, within_periods};
 use crate::driver::error::LawError;
 use crate::driver::piecewise::{Piece, jet};
 use crate::mechanism::function::Function;
+use crate::scalar::interval::Interval;
 use crate::scalar::number::Scalar;
 
 /// From 0 to a distance within the least time: constant acceleration, constant speed, constant deceleration.
@@ -138,5 +140,20 @@ impl<T: Scalar> Function<T> for Trapezoidal {
 
     fn breakpoint_after(&self, x: f64) -> Option<f64> {
         self.breakpoints().into_iter().find(|place| x < *place)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        let [from, to] = within_periods([from, to], 0.0, None)?;
+        let mut union = Union::default();
+        let [start, fast, slowing, end] = self.breakpoints();
+        let ends = [f64::NEG_INFINITY, start, fast, slowing, end, f64::INFINITY];
+        for (begin, end) in ends.into_iter().zip(ends.into_iter().skip(1)) {
+            if begin < end && begin <= to && from <= end {
+                let piece = self.piece(begin);
+                let local = Interval::between(from.max(begin) - piece.origin, to.min(end) - piece.origin);
+                union.add(of_polynomial::<3, K>(&piece.coefficients, local));
+            }
+        }
+        union.bounds()
     }
 }

@@ -1,5 +1,6 @@
 //! Functions that are supplied at run time: tabulated laws, splines, a user's own.
 
+use crate::scalar::interval::Interval;
 use crate::scalar::number::Scalar;
 
 /// A function that a text declares, as its emitted type lists it: the requirements on a table.
@@ -72,6 +73,15 @@ pub trait Function<T: Scalar> {
     fn breakpoint_after(&self, _x: f64) -> Option<f64> {
         None
     }
+
+    /// Bounds of the value and of the first `K` − 1 derivatives at all arguments from `from` to `to`; `None` where none are known.
+    /// Asked for with `K <= ORDER + 1` alone.
+    ///
+    /// Searches that may miss nothing ask for them, as [`reach`](crate::driver::reach()) does; no step does. The bounds of a
+    /// shorter interval must be closer. [`Bounded`](crate::driver::Bounded) makes them from a bound of the third derivative.
+    fn enclosure<const K: usize>(&self, _from: f64, _to: f64) -> Option<[Interval<f64>; K]> {
+        None
+    }
 }
 
 impl<T: Scalar, F: Function<T>> Function<T> for &F {
@@ -84,5 +94,9 @@ impl<T: Scalar, F: Function<T>> Function<T> for &F {
 
     fn breakpoint_after(&self, x: f64) -> Option<f64> {
         (*self).breakpoint_after(x)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        (*self).enclosure(from, to)
     }
 }

@@ -12,7 +12,8 @@ pub mod text;
 use core::array::from_fn;
 
 use basis::Basis;
-use mbs_runtime::Real;
+use mbs_runtime::driver::centred;
+use mbs_runtime::{Interval, Real, Scalar};
 
 use super::CamError;
 use super::shapes::ORDERS;
@@ -211,12 +212,29 @@ impl BSpline {
             return [T::constant(0.0); ORDERS];
         }
         let index = self.places.partition_point(|start| *start <= place).clamp(1, self.pieces.len()) - 1;
+        self.piece(index, x)
+    }
+
+    fn piece<T: Scalar, const K: usize>(&self, index: usize, x: T) -> [T; K] {
         let distance = x - T::constant(self.places[index]);
         from_fn(|order| {
             let falling = |k: usize| (0..order).map(|j| (k - j) as f64).product::<f64>();
             let terms = self.pieces[index].iter().enumerate().skip(order).rev();
             terms.fold(T::constant(0.0), |sum, (k, term)| sum * distance + T::constant(term * falling(k)))
         })
+    }
+
+    /// Bounds of value and `K` − 1 derivatives between two angles, `K` at most [`order`](Self::order) + 1.
+    pub(super) fn enclosure<const K: usize>(&self, [from, to]: [f64; 2]) -> [Interval<f64>; K] {
+        let [first, last] = self.range();
+        let rest = (from < first || to > last).then_some([Interval::of(0.0); K]);
+        let met = (0..self.pieces.len()).filter_map(|index| {
+            let (low, high) = (from.max(self.places[index]), to.min(self.places[index + 1]));
+            (low <= high).then(|| centred(|x| self.piece::<_, K>(index, x), low, high))
+        });
+        let around =
+            |one: [Interval<f64>; K], other: [Interval<f64>; K]| from_fn(|k| one[k].around(other[k]));
+        met.chain(rest).reduce(around).unwrap_or([Interval::of(0.0); K])
     }
 
     /// Largest magnitudes of all derivatives.

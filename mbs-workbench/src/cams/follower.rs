@@ -7,7 +7,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use mbs_runtime::Real;
+use mbs_runtime::{Real, Scalar};
 
 use super::jet::{Jet, Plane};
 use super::lift::Lift;
@@ -260,7 +260,7 @@ impl Cam {
     }
 
     /// The follower at `theta`, and the angle of its arm.
-    fn pose<T: Real>(&self, lift: Jet<T>) -> (Pose<T>, Jet<T>) {
+    fn pose<T: Scalar>(&self, lift: Jet<T>) -> (Pose<T>, Jet<T>) {
         let number = Jet::<T>::constant;
         let polar = |[x, y]: [f64; 2]| {
             let point = Plane::<T>::constant([x, y]);
@@ -308,9 +308,14 @@ impl Cam {
 
     /// Centre of the pad in the cam's frame at the cam angle `theta` (rad); the nearest point of a flat face.
     pub(super) fn pitch<T: Real>(&self, theta: T) -> Plane<T> {
+        self.pitch_of(theta, Jet::of_derivatives(self.lift.jet(theta)))
+    }
+
+    /// The same with a lift that is known.
+    pub(super) fn pitch_of<T: Scalar>(&self, theta: T, lift: Jet<T>) -> Plane<T> {
         let turn = Jet::variable(theta).scaled(self.direction.sign());
         let back = Plane::direction(-turn);
-        match self.pose(Jet::of_derivatives(self.lift.jet(theta))).0 {
+        match self.pose(lift).0 {
             Pose::Pad(centre, _) => back * centre,
             Pose::Face(normal, distance) => back * Plane::direction(normal).times(distance),
         }

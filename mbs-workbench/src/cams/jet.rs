@@ -5,7 +5,7 @@
 use core::array::from_fn;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use mbs_runtime::Real;
+use mbs_runtime::Scalar;
 
 /// Taylor coefficients f⁽ᵏ⁾/k!, k = 0 … 3.
 ///
@@ -22,7 +22,7 @@ pub struct Plane<T> {
     pub y: Jet<T>,
 }
 
-impl<T: Real> Jet<T> {
+impl<T: Scalar> Jet<T> {
     /// A number that does not vary.
     pub fn constant(value: f64) -> Self {
         Jet([value, 0.0, 0.0, 0.0].map(T::constant))
@@ -118,7 +118,7 @@ impl<T: Real> Jet<T> {
     }
 }
 
-impl<T: Real> Plane<T> {
+impl<T: Scalar> Plane<T> {
     /// A point that does not move.
     pub fn constant([x, y]: [f64; 2]) -> Self {
         Plane { x: Jet::constant(x), y: Jet::constant(y) }
@@ -177,7 +177,7 @@ impl<T: Real> Plane<T> {
     }
 }
 
-impl<T: Real> Add for Jet<T> {
+impl<T: Scalar> Add for Jet<T> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -185,7 +185,7 @@ impl<T: Real> Add for Jet<T> {
     }
 }
 
-impl<T: Real> Sub for Jet<T> {
+impl<T: Scalar> Sub for Jet<T> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -193,7 +193,7 @@ impl<T: Real> Sub for Jet<T> {
     }
 }
 
-impl<T: Real> Neg for Jet<T> {
+impl<T: Scalar> Neg for Jet<T> {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -201,7 +201,7 @@ impl<T: Real> Neg for Jet<T> {
     }
 }
 
-impl<T: Real> Mul for Jet<T> {
+impl<T: Scalar> Mul for Jet<T> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -213,7 +213,7 @@ impl<T: Real> Mul for Jet<T> {
     }
 }
 
-impl<T: Real> Div for Jet<T> {
+impl<T: Scalar> Div for Jet<T> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
@@ -221,7 +221,7 @@ impl<T: Real> Div for Jet<T> {
     }
 }
 
-impl<T: Real> Add for Plane<T> {
+impl<T: Scalar> Add for Plane<T> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -229,7 +229,7 @@ impl<T: Real> Add for Plane<T> {
     }
 }
 
-impl<T: Real> Sub for Plane<T> {
+impl<T: Scalar> Sub for Plane<T> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -237,7 +237,7 @@ impl<T: Real> Sub for Plane<T> {
     }
 }
 
-impl<T: Real> Mul for Plane<T> {
+impl<T: Scalar> Mul for Plane<T> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {

@@ -3,7 +3,7 @@
 use core::f64::consts::{PI, TAU};
 
 use mbs_runtime::driver::{Cycloid, Law, Polynomial345, Polynomial4567, Rise};
-use mbs_runtime::{Function, Real};
+use mbs_runtime::{Function, Interval, Real};
 
 use super::bspline::BSpline;
 use super::shapes::{ConstantVelocity, EvenPowers, ModifiedSine, ModifiedTrapezoid, ORDERS, SimpleHarmonic};
@@ -114,6 +114,30 @@ impl Flank {
         }
     }
 
+    fn enclosure<const K: usize>(
+        self,
+        [from, to]: [f64; 2],
+        [start, duration, height]: [f64; 3],
+    ) -> Option<[Interval<f64>; K]> {
+        fn of<L: Law, const K: usize>(
+            [from, to]: [f64; 2],
+            [start, duration, height]: [f64; 3],
+        ) -> Option<[Interval<f64>; K]> {
+            let rise = Rise::<L>::new(start, duration, 0.0, height).ok()?;
+            Function::<f64>::enclosure(&rise, from, to)
+        }
+        let (x, shape) = ([from, to], [start, duration, height]);
+        match self {
+            Flank::Harmonic => of::<SimpleHarmonic, K>(x, shape),
+            Flank::Polynomial345 => of::<Polynomial345, K>(x, shape),
+            Flank::Polynomial4567 => of::<Polynomial4567, K>(x, shape),
+            Flank::Cycloid => of::<Cycloid, K>(x, shape),
+            Flank::ModifiedSine => of::<ModifiedSine, K>(x, shape),
+            Flank::ModifiedTrapezoid => of::<ModifiedTrapezoid, K>(x, shape),
+            Flank::ConstantVelocity => of::<ConstantVelocity, K>(x, shape),
+        }
+    }
+
     fn jet<T: Real>(self, x: T, start: f64, duration: f64, height: f64) -> [T; ORDERS] {
         fn of<L: Law, T: Real>(x: T, start: f64, duration: f64, height: f64) -> [T; ORDERS] {
             match Rise::<L>::new(start, duration, 0.0, height) {
@@ -148,6 +172,27 @@ impl Part {
             Part::Step { flank, start, duration, height } => flank.jet(x, *start, *duration, *height),
             Part::Table(spline) => spline.jet(x),
             Part::Pieces(law) => law.jet(x),
+        }
+    }
+
+    fn enclosure<const K: usize>(&self, [from, to]: [f64; 2]) -> Option<[Interval<f64>; K]> {
+        match self {
+            Part::Hump { law, height, centre, half } => {
+                let number = Interval::of;
+                let share = |x: f64| (number(x) - number(*centre)) / number(*half);
+                let mut bounds = law.enclosure([share(from).low(), share(to).high()]);
+                let mut factor = number(*height);
+                for derivative in &mut bounds {
+                    *derivative = *derivative * factor;
+                    factor = factor / number(*half);
+                }
+                Some(bounds)
+            }
+            Part::Step { flank, start, duration, height } => {
+                flank.enclosure([from, to], [*start, *duration, *height])
+            }
+            Part::Table(spline) => spline.enclosure(from, to),
+            Part::Pieces(law) => Some(law.enclosure([from, to])),
         }
     }
 
@@ -291,6 +336,46 @@ impl Lift {
         } else {
             [s, v, a, j]
         }
+    }
+
+    /// Bounds of value and three derivatives between two cam angles (rad), as far as they are continuous.
+    pub fn enclosure(&self, from: f64, to: f64) -> Option<[Interval<f64>; 4]> {
+        let end = self.origin + TAU;
+        let turns = TAU * ((from - self.origin) / TAU).floor();
+        // Rounding of the turns taken off.
+        let margin = 8.0 * f64::EPSILON * (from.abs().max(to.abs()) + end.abs());
+        let (from, to) = (from - turns - margin, to - turns + margin);
+        if to - from > TAU {
+            return None;
+        }
+        let corrections = if self.polydyne > 0.0 { 2 } else { 0 };
+        let of_parts = |angles: [f64; 2]| match self.order().min(3) + corrections {
+            1 => self.enclosure_of_parts::<2>(angles),
+            2 => self.enclosure_of_parts::<3>(angles),
+            3 => self.enclosure_of_parts::<4>(angles),
+            4 => self.enclosure_of_parts::<5>(angles),
+            5 => self.enclosure_of_parts::<6>(angles),
+            _ => None,
+        };
+        let here = of_parts([from, to.min(end)])?;
+        if to <= end {
+            return Some(here);
+        }
+        let next = of_parts([self.origin - margin, to - TAU])?;
+        Some(core::array::from_fn(|k| here[k].around(next[k])))
+    }
+
+    fn enclosure_of_parts<const K: usize>(&self, angles: [f64; 2]) -> Option<[Interval<f64>; 4]> {
+        let mut sum = [Interval::of(0.0); K];
+        for part in &self.parts {
+            sum.iter_mut().zip(part.enclosure::<K>(angles)?).for_each(|(sum, term)| *sum = *sum + term);
+        }
+        let unknown = Interval::between(f64::NEG_INFINITY, f64::INFINITY);
+        let of = |order: usize| sum.get(order).copied().unwrap_or(unknown);
+        let correction = |order: usize| Interval::of(self.polydyne) * of(order + 2);
+        Some(core::array::from_fn(|order| {
+            if self.polydyne > 0.0 { of(order) + correction(order) } else { of(order) }
+        }))
     }
 
     /// Angles of one turn at which pieces meet, from its beginning to its end, both included.

@@ -5,7 +5,7 @@
 
 use core::f64::consts::TAU;
 
-use mbs_runtime::Function;
+use mbs_runtime::{Function, Interval};
 
 use super::CamError;
 use super::follower::Cam;
@@ -16,6 +16,15 @@ const PLACES: usize = 720;
 
 /// Most steps of the search. Halving alone needs 52.
 const MOST_STEPS: usize = 60;
+
+/// Error of values and of the cam angle of a polar angle, far above rounding.
+const MARGIN: f64 = 1e-11;
+
+/// Parts of the polar angle that are longer are bounded by those of shorter ones (rad).
+const LONGEST: f64 = TAU / 64.0;
+
+/// Parts of the cam angle that are shorter are not halved (rad).
+const SHORTEST: f64 = 1e-7;
 
 /// Polar radius (m) over the polar angle (rad), with `ORDER` continuous derivatives, at most 3.
 ///
@@ -74,6 +83,10 @@ impl<const ORDER: usize> Pitch<ORDER> {
         if (total - TAU).abs() > 1e-9 {
             return fault("pitch curve", "it does not go round the cam's centre once".to_string());
         }
+        if let Some(theta) = pitch.turns_back() {
+            let why = format!("it has no polar radius at {:.3} deg of the cam", theta.to_degrees());
+            return fault("pitch curve", why);
+        }
         let joints = cam.lift.joints();
         pitch.joints = joints.iter().map(|theta| pitch.at(*theta).angle().value()).collect();
         Ok(pitch)
@@ -85,6 +98,71 @@ impl<const ORDER: usize> Pitch<ORDER> {
 
     fn at(&self, theta: f64) -> Plane<f64> {
         self.cam.pitch(theta)
+    }
+
+    /// The pad's centre between two cam angles.
+    fn between(&self, [from, to]: [f64; 2]) -> Option<Plane<Interval<f64>>> {
+        let [s, v, a, j] = self.cam.lift.enclosure(from, to)?;
+        let lift = Jet([s, v, a * Interval::of(0.5), j * Interval::of(1.0 / 6.0)]);
+        Some(self.cam.pitch_of(Interval::between(from, to), lift))
+    }
+
+    /// A cam angle up to which bounds do not show that the polar angle goes on in its sense.
+    fn turns_back(&self) -> Option<f64> {
+        let mut waiting: Vec<[f64; 2]> =
+            (0..PLACES).rev().map(|place| [self.theta(place), self.theta(place + 1)]).collect();
+        while let Some([from, to]) = waiting.pop() {
+            let pace = self.between([from, to]).map(|z| z.cross(z.rate()).value());
+            if pace.is_some_and(|pace| if self.sense > 0.0 { pace.low() > 0.0 } else { pace.high() < 0.0 }) {
+                continue;
+            }
+            if to - from < SHORTEST {
+                return Some(from);
+            }
+            let middle = 0.5 * (from + to);
+            waiting.extend([[middle, to], [from, middle]]);
+        }
+        None
+    }
+
+    /// Bounds of the polar radius and three derivatives between two polar angles (rad).
+    fn bounds(&self, from: f64, to: f64) -> Option<[Interval<f64>; 4]> {
+        let span = to - from;
+        if !(0.0..=2.0 * TAU).contains(&span) {
+            return None;
+        }
+        let parts = (span / LONGEST).ceil().max(1.0);
+        let place = |k: f64| if k == parts { to } else { from + span * k / parts };
+        let mut all: Option<[Interval<f64>; 4]> = None;
+        for k in 0..parts as u32 {
+            let found = self.bounds_of_part([place(f64::from(k)), place(f64::from(k) + 1.0)])?;
+            all = Some(all.map_or(found, |all| core::array::from_fn(|k| all[k].around(found[k]))));
+        }
+        all
+    }
+
+    fn bounds_of_part(&self, [from, to]: [f64; 2]) -> Option<[Interval<f64>; 4]> {
+        let ends = [from, to].map(|w| self.cam_angle(w));
+        // The cam angle follows the polar one in its sense, over whole turns too.
+        let [low, high] = if self.sense > 0.0 { ends } else { [ends[1], ends[0]] };
+        let high = low + (high - low + MARGIN).rem_euclid(TAU) - MARGIN;
+        let z = self.between([low - MARGIN, high.max(low) + MARGIN])?;
+        let (radius, rate) = (z.length(), z.rate());
+        let pace = z.cross(rate) / z.dot(z);
+        let first = radius.rate() / pace;
+        let second = first.rate() / pace;
+        let third = second.rate() / pace;
+        let mut bounds = [radius, first, second, third].map(Jet::value);
+        // Closer ones from the middle, where all is known to rounding (mean value theorem).
+        let all = Interval::between(from, to);
+        let middle = 0.5 * (from + to);
+        let known = self.jet::<3>(middle);
+        let width = MARGIN * known.iter().map(|value| value.abs()).sum::<f64>();
+        for order in (0..3).rev() {
+            let at = Interval::between(known[order] - width, known[order] + width);
+            bounds[order] = bounds[order].and(at + (all - Interval::of(middle)) * bounds[order + 1]);
+        }
+        Some(bounds)
     }
 
     /// The cam angle (rad) at which the pad's centre has the polar angle `w`. NaN for NaN.
@@ -135,6 +213,12 @@ impl<const ORDER: usize> Function<f64> for Pitch<ORDER> {
         };
         let next = self.joints.iter().map(ahead).reduce(f64::min)?;
         Some(x + next).filter(|place| *place > x)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        let unknown = Interval::between(f64::NEG_INFINITY, f64::INFINITY);
+        let bounds = self.bounds(from, to)?;
+        Some(core::array::from_fn(|order| bounds.get(order).copied().unwrap_or(unknown)))
     }
 }
 

@@ -186,3 +186,86 @@ fn a_table_from_a_file_is_the_pitch_curve_that_it_was_made_of() {
     assert!(fine[0] < 1e-9 && fine[2] < 1e-3, "{fine:?}");
     std::fs::remove_dir_all(&folder).expect("the folder");
 }
+
+/// Cams of every kind of law, with a pad.
+fn cams() -> Vec<Cam> {
+    let roller = Follower::Roller { base: 0.02, radius: 0.01, offset: 0.003 };
+    let arm = Follower::OscillatingRoller {
+        base: 0.02,
+        pivot: [0.05, 0.01],
+        arm: 0.045,
+        radius: 0.01,
+        side: crate::cams::follower::Side::Left,
+    };
+    let flanks = |flank, height| Lift::flanks(flank, height, [1.2, 0.4, 1.4]).expect("a law");
+    let samples: Vec<f64> = (0..48).map(|k| TAU * f64::from(k) / 48.0).collect();
+    let heights: Vec<f64> = samples.iter().map(|x| 0.002 * (1.0 - x.cos()) * (1.0 + 0.3 * x.sin())).collect();
+    let spline =
+        crate::tables::Spline::fit(&samples, &heights, crate::tables::SplineKind::PeriodicQuintic(TAU), None);
+    [
+        (flanks(Flank::Polynomial4567, 0.008), roller),
+        (flanks(Flank::ModifiedTrapezoid, 0.008), roller),
+        (flanks(Flank::ModifiedSine, 0.2), arm),
+        (flanks(Flank::Cycloid, 0.2).with_ramps(0.01, 0.5).expect("ramps"), arm),
+        (
+            Lift::hump(&[2, 6, 8, 10, 12], 0.008, 2.4).expect("a law").with_polydyne(0.01).expect("a law"),
+            roller,
+        ),
+        (Lift::table(spline.expect("a spline")).expect("a law"), roller),
+    ]
+    .into_iter()
+    .map(|(law, follower)| Cam::new(law, follower, Direction::Clockwise).expect("a cam"))
+    .chain([opener(Direction::CounterClockwise)])
+    .collect()
+}
+
+#[test]
+fn values_of_pitch_curves_are_within_their_enclosures() {
+    for cam in cams() {
+        let pitch = Pitch::<2>::new(&cam).expect("a pitch curve");
+        for k in 0..60 {
+            let width = 10.0_f64.powf(-0.1 * f64::from(k));
+            let low = 0.37 * f64::from(k * k) - 7.0;
+            let bounds = pitch.enclosure::<3>(low, low + width).expect("bounds");
+            for share in 0..=20 {
+                let w = low + width * f64::from(share) / 20.0;
+                for (order, value) in pitch.jet::<3>(w).into_iter().enumerate() {
+                    let bound = bounds[order];
+                    let is_within = bound.low() <= value + 1e-10 && value <= bound.high() + 1e-10;
+                    assert!(is_within, "{:?}: {order} at {w}: {value} {bound:?}", cam.lift);
+                    let is_close = width > 1e-3 || bound.high() - bound.low() < 20.0 * width;
+                    assert!(is_close, "{:?}: {order} within {width}: {bound:?}", cam.lift);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn reach_of_a_pitch_curve_is_that_of_many_of_its_places() {
+    let cam = opener(Direction::CounterClockwise);
+    let pitch = Pitch::<3>::new(&cam).expect("a pitch curve");
+    let [inside, outside] = mbs_runtime::driver::reach(&pitch).expect("a reach");
+    // Radius of curvature by the synthesis at places of the cam angle.
+    let radii = (0..7200).map(|k| cam.place(TAU * f64::from(k) / 7200.0).pitch_radius);
+    let (mut convex, mut hollow) = (f64::INFINITY, f64::INFINITY);
+    for radius in radii {
+        if radius > 0.0 { convex = convex.min(radius) } else { hollow = hollow.min(-radius) }
+    }
+    println!("reach {inside:.5} m of {convex:.5}, {outside:.5} m of {hollow:.5}");
+    assert!(inside <= convex && inside > 0.99 * convex, "{inside} {convex}");
+    assert!(outside <= hollow && (hollow.is_infinite() || outside > 0.5 * hollow), "{outside} {hollow}");
+}
+
+#[test]
+fn a_pitch_curve_that_turns_back_between_two_places_is_refused() {
+    let roller = Follower::Roller { base: 0.02, radius: 0.01, offset: 0.005 };
+    // A bump of a tenth of a degree, full at a place that is looked at.
+    let law = |height: f64| Lift::hump(&[2, 4, 6, 8], height, 0.1_f64.to_radians()).expect("a law");
+    let pitch = |height: f64| {
+        let cam = Cam::new(law(height), roller, Direction::CounterClockwise).expect("a cam");
+        Pitch::<3>::new(&cam).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(pitch(1e-5), Ok(()));
+    assert!(pitch(1e-3).is_err_and(|error| error.contains("no polar radius")));
+}

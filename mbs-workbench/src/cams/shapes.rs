@@ -3,8 +3,8 @@
 use core::array::from_fn;
 use core::f64::consts::PI;
 
-use mbs_runtime::driver::Law;
-use mbs_runtime::{Real, Scalar};
+use mbs_runtime::driver::{Law, centred};
+use mbs_runtime::{Interval, Real, Scalar};
 
 use super::CamError;
 
@@ -183,6 +183,26 @@ impl EvenPowers {
         if !is_within {
             return [T::constant(if x.is_finite() { 0.0 } else { f64::NAN }); ORDERS];
         }
+        self.within(x)
+    }
+
+    /// Bounds of value and `K` − 1 derivatives between two places, `K` at most the number of exponents.
+    pub fn enclosure<const K: usize>(&self, [from, to]: [f64; 2]) -> [Interval<f64>; K] {
+        let rest = [Interval::of(0.0); K];
+        let (low, high) = (from.max(-1.0), to.min(1.0));
+        let is_within = low <= high;
+        if !is_within {
+            return rest;
+        }
+        let mut bounds = centred(|x| self.within::<_, K>(x), low, high);
+        if from < -1.0 || to > 1.0 {
+            bounds.iter_mut().zip(rest).for_each(|(bound, rest)| *bound = bound.around(rest));
+        }
+        bounds
+    }
+
+    fn within<T: Scalar, const K: usize>(&self, x: T) -> [T; K] {
+        let one = T::constant(1.0);
         let mut terms = vec![T::constant(0.0); self.exponents.last().map_or(1, |p| *p as usize + 1)];
         terms[0] = one;
         for p in &self.exponents {

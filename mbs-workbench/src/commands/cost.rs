@@ -26,7 +26,7 @@ use crate::cost::result::CostResult;
 use crate::cost::splines;
 use crate::erased::costs::Comparable;
 use crate::erased::facade::AnyEquations;
-use crate::forge::{Blueprint, Forge, Study};
+use crate::forge::{Blueprint, Forge, NameFrom, Study};
 use crate::mismatch::{nearest, wrapped};
 use crate::setting::{Kernel, MotionMethod};
 use crate::tables::valley::NamedLaw;
@@ -100,9 +100,11 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let mut words: Vec<_> = std::env::args_os().skip(1).collect();
     let mut is_driven = is_file(arguments.name());
     let mut known = None;
-    let (blueprint, second) = if is_file(arguments.name()) {
+    let blueprints = if is_file(arguments.name()) {
         methods(&arguments.methods)?;
-        (Blueprint::study_of_text(&Study::COST, &TextFile::read(arguments.name())?)?, None)
+        let text = TextFile::read(arguments.name())?;
+        super::functions::require(&text)?;
+        vec![Blueprint::study_of_text(&Study::COST, &text)]
     } else {
         // What is wrong on the command line is said before anything is built.
         let target = Target::find(catalogue, arguments.name())?;
@@ -122,40 +124,47 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         let equations = instance.equations();
         let until = arguments.until.map_or_else(|| target.duration(equations), Ok)?;
         known = cost_known::written(&target, equations, !arguments.parameters.is_empty(), until)?;
-        let own = type_of(equations);
+        let own = equations.path();
         let functions = equations.functions();
         let of = |study: &Study| {
             let text = (own.as_str(), equations.source(), functions);
             Blueprint::study_of_card(study, &forge, target.card(), text)
         };
         // Functions that exist in `f64` alone are known by a first program that does not compile.
-        let second = if functions.is_empty() { None } else { Some(of(&Study::COST.in_doubles())?) };
-        (of(&Study::COST)?, second)
+        let others = [NameFrom::Text, NameFrom::Constructor].map(|name| Study::COST.in_doubles(name));
+        let others = others.iter().filter(|_| !functions.is_empty());
+        [Study::COST].iter().chain(others).map(of).collect::<Result<Vec<_>, _>>()?
     };
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;
     }
     if arguments.kernels && is_driven {
-        let directory = cost_kernels::compared(&forge, &blueprint, second.as_ref(), &words)?;
+        let directory = cost_kernels::compared(&forge, &blueprints, &words)?;
         words.extend(["--points-from".into(), directory.into_os_string()]);
     }
     if let Some(path) = known {
         words.extend(["--known".into(), path.into_os_string()]);
     }
-    match (studied(&forge, &blueprint, words.clone()), second) {
-        (Err(CommandError::Failed(reason)), Some(second)) if reason.contains("Function<") => {
-            studied(&forge, &second, words)
-        }
-        (found, _) => found,
-    }
+    first_that_compiles(&forge, &blueprints, &words)
 }
 
-/// Name of the type of a mechanism: a scene has one of its own.
-pub(super) fn type_of(equations: &dyn AnyEquations) -> String {
-    match equations.scene() {
-        "AllEffects" => equations.type_name().to_string(),
-        scene => format!("{}{scene}", equations.type_name()),
+/// Builds the first program of `blueprints` that compiles and runs it. Those behind the first one take functions in `f64` alone, and are
+/// tried only where such functions are the reason.
+pub(super) fn first_that_compiles(
+    forge: &Forge,
+    blueprints: &[Blueprint],
+    arguments: &[std::ffi::OsString],
+) -> Result<ExitCode, CommandError> {
+    let [first, others @ ..] = blueprints else { return Ok(ExitCode::FAILURE) };
+    let mut ended = studied(forge, first, arguments.to_vec());
+    let is_of_doubles = matches!(&ended, Err(CommandError::Failed(reason)) if reason.contains("Function<"));
+    for other in others.iter().filter(|_| is_of_doubles) {
+        ended = studied(forge, other, arguments.to_vec());
+        if !matches!(ended, Err(CommandError::Failed(_))) {
+            break;
+        }
     }
+    ended
 }
 
 /// Builds the program of a study and runs it.
@@ -184,7 +193,7 @@ fn driven(target: &Target) -> CommandError {
 
 impl Arguments {
     /// The mechanism or file.
-    pub(super) fn name(&self) -> &str {
+    pub fn name(&self) -> &str {
         self.name.as_deref().unwrap_or_default()
     }
 
@@ -330,11 +339,7 @@ pub fn study(
                     fact(&name, words);
                 }
             }
-            fact(
-                "reference",
-                "positions closed to 29 digits in double-double numbers; rates by differences of positions"
-                    .to_string(),
-            );
+            fact("reference", found.reference());
             fact(
                 "width of rates",
                 format!("{}, by the rows against differences of positions", two_digits(found.width)),
@@ -349,7 +354,7 @@ pub fn study(
             for (leg, reference) in &found.references {
                 let events = match reference.contacts.len() {
                     0 => String::new(),
-                    events => format!(", {events} contacts"),
+                    events => format!(", {events} changes of contacts and events"),
                 };
                 let words = match &reference.stuck {
                     None => {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use super::CommandError;
-use super::cost::studied;
+use super::cost::first_that_compiles;
 use crate::cost::kernels;
 use crate::cost::points::Point;
 use crate::forge::{Blueprint, Forge};
@@ -31,18 +31,17 @@ fn file(directory: &Path, kernel: Kernel) -> PathBuf {
     directory.join(format!("{}.json", kernel.feature().unwrap_or("own")))
 }
 
-/// Builds a program for each kernel and runs it with `words`; the directory with their points. `second`: the blueprint to try where the
-/// first does not compile.
+/// Builds a program for each kernel, of the first of `blueprints` that compiles, and runs it with `words`; the directory with their points.
 ///
 /// # Errors
 /// A program does not build, or its study fails.
 pub fn compared(
     forge: &Forge,
-    blueprint: &Blueprint,
-    second: Option<&Blueprint>,
+    blueprints: &[Blueprint],
     words: &[OsString],
 ) -> Result<PathBuf, CommandError> {
-    let directory = target_directory().join("mbs").join(format!("{}_sines", blueprint.name));
+    let name = blueprints.first().map_or("", |blueprint| &blueprint.name);
+    let directory = target_directory().join("mbs").join(format!("{name}_sines"));
     fs::create_dir_all(&directory)
         .map_err(|error| CommandError::Failed(format!("cannot make {}: {error}", directory.display())))?;
     for kernel in KERNELS {
@@ -61,12 +60,9 @@ pub fn compared(
         };
         let mut words = words.to_vec();
         words.extend(["--points".into(), path.clone().into_os_string()]);
-        let of =
-            |blueprint: &Blueprint| studied(&own, &blueprint.clone().with_feature(feature), words.clone());
-        let ended = match (of(blueprint), second) {
-            (Err(CommandError::Failed(reason)), Some(second)) if reason.contains("Function<") => of(second),
-            (ended, _) => ended,
-        }?;
+        let with_feature = |blueprint: &Blueprint| blueprint.clone().with_feature(feature);
+        let featured: Vec<Blueprint> = blueprints.iter().map(with_feature).collect();
+        let ended = first_that_compiles(&own, &featured, &words)?;
         if ended != ExitCode::SUCCESS {
             return Err(CommandError::Failed(format!("the study with the feature `{feature}` failed")));
         }

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{CommandError, summary};
 use crate::cost::advice::{rust, time_text, two_digits};
 use crate::cost::points::{Outcome, Point, Verdict, cheapest, front};
-use crate::cost::result::CostResult;
+use crate::cost::result::{CostResult, event_times};
 use crate::setting::{FormulationName, IntegratorName, MotionMethod, Numbers, Resolution, Setting};
 
 /// Prints the result, with the choice as Rust where that is asked for.
@@ -17,12 +17,16 @@ pub fn print(result: &CostResult, with_rust: bool, out: &mut dyn Write) -> Resul
     let on_front: Vec<&Point> =
         front(&result.points).into_iter().map(|index| &result.points[index]).collect();
     let widest = on_front.iter().map(|point| point.setting.to_string().chars().count()).max().unwrap_or(7);
+    // A column of its own where the motion has events.
+    let events = |word: Option<String>| word.map_or_else(String::new, |word| format!("  {word:>11}"));
+    let has_events = on_front.iter().any(|point| of_events(point).is_some());
     writeln!(
         out,
-        "\n{:<widest$}  {:>8}  {:>8}  {:>24}  {:>11}  {:>11}",
+        "\n{:<widest$}  {:>8}  {:>8}{}  {:>24}  {:>11}  {:>11}",
         "setting",
         "error",
         "median",
+        events(has_events.then(|| "event times".to_string())),
         result.unit(),
         "evaluations",
         "corrections"
@@ -32,10 +36,11 @@ pub fn print(result: &CostResult, with_rust: bool, out: &mut dyn Write) -> Resul
         let mark = if *verdict == Verdict::Hollow { " (next to the width of the reference)" } else { "" };
         writeln!(
             out,
-            "{:<widest$}  {:>8}  {:>8}  {:>24}  {:>11}  {:>11}{mark}",
+            "{:<widest$}  {:>8}  {:>8}{}  {:>24}  {:>11}  {:>11}{mark}",
             point.setting.to_string(),
             two_digits(errors.judged),
             two_digits(errors.median),
+            events(has_events.then(|| of_events(point).unwrap_or_default())),
             summary::significant(point.time, 3),
             point.effort.evaluations,
             point.effort.corrections
@@ -66,6 +71,14 @@ pub fn print(result: &CostResult, with_rust: bool, out: &mut dyn Write) -> Resul
     }
     writeln!(out)?;
     Ok(())
+}
+
+/// The largest error (s) of the times of contacts and events of a run, in words.
+fn of_events(point: &Point) -> Option<String> {
+    match &point.outcome {
+        Outcome::Done { errors, .. } => event_times(errors.contact),
+        Outcome::Refused(_) => None,
+    }
 }
 
 /// The cheapest run of each other program that reaches the asked error, its time over ours; reasons of those without one.

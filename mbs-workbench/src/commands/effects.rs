@@ -33,7 +33,7 @@ use crate::text_file::{TextFile, is_file};
 #[derive(Args)]
 pub struct Arguments {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
-    name: String,
+    pub name: String,
     /// Outputs that are compared [default: all]
     #[arg(long, value_name = "OUT", value_delimiter = ',')]
     watch: Vec<String>,
@@ -82,6 +82,7 @@ struct StudiedText {
     mechanism: String,
     source: String,
     scene: Option<String>,
+    /// Functions of its crate, which a copy of the text does not have.
     functions: Vec<String>,
     /// Parameters and inputs that differ from the defaults.
     values: Vec<(String, f64)>,
@@ -116,6 +117,7 @@ impl StudiedText {
 
     fn of_file(name: &str, arguments: &Arguments) -> Result<Self, CommandError> {
         let text = TextFile::read(name)?;
+        super::functions::require(&text)?;
         let unread = |faults| Mismatch::Text { name: name.to_string(), faults };
         let scene = text.scene.as_deref();
         let Picture { title, presets, span, .. } = picture(&text.source, scene).map_err(unread)?;
@@ -165,7 +167,7 @@ impl StudiedText {
             mechanism: text.name.clone(),
             source: text.source,
             scene: text.scene,
-            functions: text.functions,
+            functions: Vec::new(),
             values,
             until,
         })
@@ -348,7 +350,10 @@ fn command(arguments: &Arguments) -> String {
 
 /// Scenes as the program that has them measured them.
 fn measured_by(program: &Path, order: &Order) -> Result<Vec<Measured>, String> {
+    let functions =
+        super::functions::options().into_iter().flat_map(|given| ["--function".to_string(), given]);
     let mut child = Command::new(program)
+        .args(functions)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -28,7 +28,7 @@ use crate::text_file::{TextFile, is_file};
 pub struct Arguments {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     /// [default: the built-in list of cases]
-    pub(super) name: Option<String>,
+    pub name: Option<String>,
     /// Cases of the built-in list by their names [default: all but the long ones]
     #[arg(long, value_name = "CASE", value_delimiter = ',', conflicts_with = "name")]
     pub(super) cases: Vec<String>,
@@ -82,7 +82,9 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
     // What is wrong on the command line is said before anything is built.
     methods(&arguments.methods)?;
     let blueprint = if let Some(name) = arguments.name.as_deref().filter(|name| is_file(name)) {
-        Blueprint::study_of_text(&Study::HARD_CASES, &TextFile::read(name)?)?
+        let text = TextFile::read(name)?;
+        super::functions::require(&text)?;
+        Blueprint::study_of_text(&Study::HARD_CASES, &text)
     } else if let Some(name) = &arguments.name {
         let target = Target::find(catalogue, name)?;
         let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
@@ -94,7 +96,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
             &Study::HARD_CASES,
             &forge,
             target.card(),
-            (&super::cost::type_of(instance.equations()), source, &[]),
+            (&instance.equations().path(), source, &[]),
         )?
     } else {
         hard_case_list::blueprint(arguments)?

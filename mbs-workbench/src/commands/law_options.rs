@@ -58,6 +58,34 @@ struct Written {
 /// # Errors
 /// [`CommandError`] with the option that is missing or wrong.
 pub fn written(text: &str) -> Result<Lift, CommandError> {
+    written_for(text, false)
+}
+
+/// `true` if a text begins with the word of a law.
+pub fn is_law(text: &str) -> bool {
+    let word = text.split_whitespace().next().unwrap_or_default();
+    ["even:", "bspline:"].iter().any(|start| word.starts_with(start))
+        || FLANKS.iter().any(|(name, _)| *name == word)
+}
+
+/// The law that is nearly written so.
+pub fn near_law(text: &str) -> Option<&'static str> {
+    let word = text.split_whitespace().next().unwrap_or_default();
+    nearest(word, FLANKS.iter().map(|(name, _)| *name))
+}
+
+/// The words of laws.
+pub fn laws() -> String {
+    FLANKS
+        .iter()
+        .map(|(name, _)| *name)
+        .chain(["even:2,6,8,10,12", "bspline:…"])
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// [`written`], of an angle where `turns`.
+pub fn written_for(text: &str, turns: bool) -> Result<Lift, CommandError> {
     // A B-spline has spaces of its own.
     let words: Vec<&str> = match text.strip_prefix("bspline:") {
         Some(_) => vec![text],
@@ -67,7 +95,7 @@ pub fn written(text: &str) -> Result<Lift, CommandError> {
         let text = error.to_string();
         usage(text.lines().next().unwrap_or_default().trim_start_matches("error: "))
     })?;
-    Ok(read.options.law(&read.law, false)?.0)
+    Ok(read.options.law(&read.law, turns)?.0)
 }
 
 pub fn in_unit(text: &str, unit: &str, example: &str) -> Result<f64, String> {

@@ -21,6 +21,7 @@ pub mod effects;
 mod effects_words;
 pub mod expand;
 pub mod fmt;
+pub mod functions;
 pub mod hard_case_list;
 pub mod hard_cases;
 pub mod latex;

@@ -27,7 +27,8 @@ pub struct Watch {
 /// Runs the command line again in a program that has the mechanism of `argument`.
 pub fn run(catalogue: &Catalogue, argument: &str, watch: Option<Watch>) -> Result<ExitCode, CommandError> {
     let text = TextFile::read(argument)?;
-    let blueprint = Blueprint::of_text(&text)?;
+    super::functions::require(&text)?;
+    let blueprint = Blueprint::of_text(&text);
     let manifest = catalogue.first().map(|card| card.manifest.as_ref());
     let mut rest: Vec<OsString> = env::args_os().skip(1).collect();
     if let Some(Watch { command, runs }) = watch {

@@ -1,5 +1,6 @@
-//! Errors of a run against a reference solution: coordinates, velocities, multipliers, energy, times of contacts.
+//! Errors of a run against a reference solution: coordinates, velocities, multipliers, energy, times of contacts and events.
 
+use crate::cost::continued::continued;
 use crate::cost::points::Errors;
 use crate::cost::reference::linear::worse;
 use crate::cost::reference::{Contact, Reference, Shot};
@@ -84,6 +85,28 @@ fn of_rates(seen: &Seen, shot: &Shot, sizes: &Sizes, late: f64) -> f64 {
     rates.map(of).fold(0.0, worse) / sizes.rate
 }
 
+/// Error of the velocities at an instant that lies between an impact `pair` in the run and in the reference: against those of the
+/// reference at the time shifted by the impact's error, on the side of the impact that the run is on. What the continued reference
+/// leaves open is taken off. None where the reference has too few instants on that side.
+fn of_rates_between(seen: &Seen, pair: &Matched, reference: &Reference, sizes: &Sizes) -> Option<f64> {
+    let late = pair.of_run - pair.exact;
+    let is_before = late > 0.0;
+    let events = || reference.contacts.iter().map(|contact| contact.t);
+    let (from, to) = match is_before {
+        true => (events().filter(|t| *t < pair.exact).fold(f64::NEG_INFINITY, f64::max), pair.exact),
+        false => (pair.exact, events().filter(|t| *t > pair.exact).fold(f64::INFINITY, f64::min)),
+    };
+    let piece = reference.shots.iter().filter(|shot| (from < shot.at.t.high) && (shot.at.t.high < to));
+    let [exact, open] = continued(piece, seen.t - late)?;
+    let rates = seen.qd.iter().zip(&exact).zip(&open).zip(&sizes.scales);
+    let of = |(((qd, exact), open), scale): (((&f64, &D), &D), &f64)| {
+        let over = apart(*qd, *exact) - open.high.abs();
+        // NaN stays.
+        if over < 0.0 { 0.0 } else { over / scale }
+    };
+    Some(rates.map(of).fold(0.0, worse) / sizes.rate)
+}
+
 /// Error of the multipliers that are unique at the `index`th instant, over the largest; NaN where none is.
 fn of_multipliers(seen: &Seen, shot: &Shot, sizes: &Sizes, index: usize) -> f64 {
     let unique = sizes.unique.get(index).map_or(&[][..], Vec::as_slice);
@@ -94,7 +117,7 @@ fn of_multipliers(seen: &Seen, shot: &Shot, sizes: &Sizes, index: usize) -> f64 
     errors.reduce(worse).unwrap_or(f64::NAN)
 }
 
-/// Times (s) of a contact in a run and in the reference.
+/// Times (s) of a contact or an event in a run and in the reference.
 #[derive(Clone, Copy, Debug)]
 struct Matched {
     of_run: f64,
@@ -158,7 +181,7 @@ fn late(pairs: &[Matched], t: f64) -> Option<f64> {
     chosen.map(|pair| pair.of_run - pair.exact)
 }
 
-/// Errors of `run`, whose contacts change at the times `contacts` (s, one list a contact), against `reference`.
+/// Errors of `run`, whose contacts and events change at the times `contacts` (s, one list each), against `reference`.
 pub fn errors(
     run: &[Seen],
     contacts: &[Vec<f64>],
@@ -185,17 +208,24 @@ pub fn errors(
         let rate = if shifted < plain { shifted } else { plain };
         let reaction = seen.observed.reaction.iter().zip(&shot.observed.reaction).zip(&sizes.scales);
         let reaction = reaction.map(|((r, exact), scale)| apart(*r, *exact) * scale / sizes.reaction);
-        // There both have no velocity in common.
-        if !pairs.iter().any(|pair| pair.is_between(shot.at.t.high)) {
-            errors.rate = worse(errors.rate, rate);
-        }
+        let is_between = pairs.iter().any(|pair| pair.is_between(shot.at.t.high));
+        let mut between = pairs.iter().filter(|pair| pair.is_between(shot.at.t.high));
+        // Between an impact of the run and that of the reference both have no velocity and no energy in common.
+        let rate = match (between.next(), between.next()) {
+            (None, _) => Some(rate),
+            (Some(pair), None) => of_rates_between(seen, pair, reference, sizes),
+            (Some(_), Some(_)) => None,
+        };
+        errors.rate = worse(errors.rate, rate.unwrap_or(0.0));
         errors.second = worse(errors.second, reaction.fold(0.0, worse));
         let multiplier = of_multipliers(seen, shot, sizes, index * stride);
         if !multiplier.is_nan() {
             errors.multiplier = errors.multiplier.max(multiplier);
         }
-        let energy = apart(seen.observed.energy, shot.observed.energy) / sizes.energy;
-        errors.energy = worse(errors.energy, energy);
+        if !is_between {
+            let energy = apart(seen.observed.energy, shot.observed.energy) / sizes.energy;
+            errors.energy = worse(errors.energy, energy);
+        }
         errors.violation = worse(errors.violation, seen.violation);
     }
     errors.judged = all.iter().copied().fold(0.0, worse);
@@ -222,6 +252,21 @@ pub fn between(a: &[Seen], b: &[Seen], sizes: &Sizes, watched: &[usize]) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cost::reference::motion::shot_of;
+    use crate::erased::exact::Observed;
+
+    fn seen_of(t: f64, qd: f64) -> Seen {
+        Seen {
+            t,
+            q: vec![0.0],
+            qd: vec![qd],
+            qdd: Vec::new(),
+            lambda: Vec::new(),
+            states: Vec::new(),
+            observed: Observed { reaction: Vec::new(), energy: 0.0, kinetic: 0.0, outputs: Vec::new() },
+            violation: 0.0,
+        }
+    }
 
     fn contact(t: f64, index: usize, closes: bool) -> Contact {
         Contact { t, index, closes, jumps: false }
@@ -256,5 +301,41 @@ mod tests {
         assert!(pairs[0].is_between(1.0 + 5e-6) && !pairs[0].is_between(1.1));
         assert!(matched(&[vec![1.0]], &reference).is_none());
         assert!(matched(&[vec![]], &reference).is_none());
+    }
+
+    #[test]
+    fn an_instant_between_two_impacts_is_compared_at_the_time_shifted_by_their_error() {
+        // A ball falls from rest and bounces with a restitution of 0.5; it reaches the floor at 0.5 s.
+        const G: f64 = 9.81;
+        let speed =
+            |t: f64, impact: f64| if t < impact { -G * t } else { 0.5 * G * impact - G * (t - impact) };
+        let run_of = |impact: f64, parts: u32| {
+            let times = (0..=parts).map(move |k| f64::from(k) / f64::from(parts));
+            times.map(move |t| shot_of(t, vec![0.0], vec![speed(t, impact)], vec![-G]))
+        };
+        let contacts = vec![Contact { jumps: true, ..contact(0.4987, 0, true) }];
+        let shots = run_of(0.4987, 200).collect();
+        let reference = Reference { shots, tolerance: 0.0, steps: 0, contacts, stuck: None };
+        let sizes = Sizes::of(&reference, [vec![1.0], Vec::new()], &|_, _| Vec::new());
+        for impact in [0.5063, 0.4926] {
+            let with = |added: f64| {
+                let run: Vec<Seen> = run_of(impact, 200)
+                    .map(|shot| {
+                        let t = shot.at.t.high;
+                        let is_between = (t - impact) * (t - 0.4987) < 0.0;
+                        let qd = shot.at.qd[0].high + if is_between { added } else { 0.0 };
+                        seen_of(t, qd)
+                    })
+                    .collect();
+                errors(&run, &[vec![impact]], &reference, &sizes, &[]).expect("errors")
+            };
+            let late = impact - 0.4987;
+            let (plain, faulty) = (with(0.0), with(1.0));
+            assert!((plain.contact - late.abs()).abs() < 1e-15, "{plain:?}");
+            // Accelerations are those of the fall, so velocities at the shifted time differ by g times the shift before the impact.
+            let own = (G * late).abs() / sizes.rate;
+            assert!((plain.rate - own).abs() < 0.6 * own, "{} {own}", plain.rate);
+            assert!((faulty.rate - 1.0 / sizes.rate).abs() < 1.6 * own, "{} {own}", faulty.rate);
+        }
     }
 }

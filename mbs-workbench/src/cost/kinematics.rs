@@ -2,6 +2,7 @@
 
 use mbs_runtime::Scalar;
 
+use crate::cost::advice::two_digits;
 use crate::cost::moved::{NoReference, WIDTHS};
 use crate::cost::points::{Errors, Expected, Outcome, Point, Verdict, WRONG, judge_by_order};
 use crate::cost::reference::linear::{Matrix, worse};
@@ -23,14 +24,30 @@ const BUDGETS: [u32; 3] = [1, 2, 3];
 /// Runs of which the shortest time counts.
 const RUNS: u32 = 5;
 
-/// Distance of the instants of a difference, as part of the span.
-const DISTANCE: f64 = 1e-5;
+/// Digits that positions are solved in.
+pub(super) struct Digits {
+    /// Distance of the instants of a difference, as part of the span.
+    distance: f64,
+    /// Corrections that no longer fall are rounding below it.
+    rounding: f64,
+    /// Least width of positions, over the largest coordinate; none where all digits are known.
+    width: Option<f64>,
+}
 
-/// The same where a function of the caller has the digits of `f64`: their rounding grows with the square of the distance's inverse.
-const DISTANCE_OF_DOUBLES: f64 = 1e-4;
+impl Digits {
+    /// Those of a mechanism with these functions in `f64` alone.
+    pub(super) fn of(doubles: &[&str]) -> Self {
+        if doubles.is_empty() { ALL } else { DOUBLES }
+    }
+}
 
-/// Width of positions there, over the largest coordinate.
-const WIDTH_OF_DOUBLES: f64 = 4.0 * f64::EPSILON;
+/// Those of double-double numbers.
+const ALL: Digits = Digits { distance: 1e-5, rounding: 1e-24, width: None };
+
+/// Those where a function of the caller has the digits of `f64`. It jumps by a rounding half-way between two neighbours of `f64`, so a row
+/// with a coordinate in its argument may be above 0 on one side and below 0 on the other one, and 0 nowhere. Corrections then lead to and
+/// fro over the jump. Rounding of the rates grows with the square of the distance's inverse.
+const DOUBLES: Digits = Digits { distance: 1e-4, rounding: 1e-12, width: Some(4.0 * f64::EPSILON) };
 
 /// Weights of the central difference of order 8.
 const WEIGHTS: [(f64, f64); 4] = [(4.0, 5.0), (-1.0, 5.0), (4.0, 105.0), (-1.0, 280.0)];
@@ -50,18 +67,33 @@ pub struct DrivenStudy {
     pub scales: Vec<f64>,
 }
 
+impl DrivenStudy {
+    /// The reference in words.
+    pub fn reference(&self) -> String {
+        let closed = match self.width_of_positions {
+            None => "29 digits in double-double numbers".to_string(),
+            Some(width) => {
+                format!("the rounding of functions in `f64`, {} of the largest coordinate", two_digits(width))
+            }
+        };
+        format!("positions closed to {closed}; rates by differences of positions")
+    }
+}
+
 /// Exact positions and rates at an instant.
-struct Exactly {
-    q: Vec<D>,
+pub(super) struct Exactly {
+    pub(super) q: Vec<D>,
     qd: Vec<D>,
     qdd: Vec<D>,
+    /// Largest distance over which its positions stay open, in the reference metric.
+    open: f64,
 }
 
 /// Corrections of a position.
 const CORRECTIONS: usize = 30;
 
-/// The position nearest to `guess` at `t` (s) that closes to all digits.
-fn solved(exact: &dyn ExactPositions, guess: &[D], t: D) -> Option<Vec<D>> {
+/// The position nearest to `guess` at `t` (s) that closes to all `digits`, with its last correction in the reference metric.
+fn solved(exact: &dyn ExactPositions, digits: &Digits, guess: &[D], t: D) -> Option<(Vec<D>, f64)> {
     let mut q = guess.to_vec();
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
@@ -72,8 +104,8 @@ fn solved(exact: &dyn ExactPositions, guess: &[D], t: D) -> Option<Vec<D>> {
         for (q, step) in q.iter_mut().zip(&step) {
             *q = *q + *step;
         }
-        if size <= 1e-29 || size >= 0.5 * last && size < 1e-24 {
-            return Some(q);
+        if size <= 1e-29 || size >= 0.5 * last && size < digits.rounding {
+            return Some((q, size));
         }
         if size.is_nan() {
             return None;
@@ -124,13 +156,19 @@ pub(super) fn open_rows(t: f64, wide: Option<&str>) -> String {
     }
 }
 
-/// Exact motion at `t` (s) next to the position `q`: rates by differences of positions, and the largest difference of the rates
-/// that Φ_t and γ give.
-fn exactly(exact: &dyn ExactPositions, q: &[f64], t: f64, h: D) -> Option<(Exactly, [f64; 2])> {
+/// Exact motion at `t` (s) next to the position `q`: rates by differences of positions over `h` (s), and the largest difference of the
+/// rates that Φ_t and γ give.
+fn exactly(
+    exact: &dyn ExactPositions,
+    digits: &Digits,
+    q: &[f64],
+    t: f64,
+    h: D,
+) -> Option<(Exactly, [f64; 2])> {
     let t = D::constant(t);
     let guess: Vec<D> = q.iter().map(|q| D::constant(*q)).collect();
-    let q = solved(exact, &guess, t)?;
-    let position = |at: D| solved(exact, &q, at);
+    let (q, open) = solved(exact, digits, &guess, t)?;
+    let position = |at: D| solved(exact, digits, &q, at).map(|(q, _)| q);
     let qd = derivative(&position, t, h)?;
     let rate = |at: D| derivative(&position, at, h);
     let qdd = derivative(&rate, t, h)?;
@@ -145,7 +183,45 @@ fn exactly(exact: &dyn ExactPositions, q: &[f64], t: f64, h: D) -> Option<(Exact
         a.iter().zip(b).zip(&scales).map(|((a, b), scale)| (*a - *b).high.abs() / scale).fold(0.0, worse)
     };
     let apart = [apart(&qd, &by_rows), apart(&qdd, &second)];
-    Some((Exactly { q, qd, qdd }, apart))
+    Some((Exactly { q, qd, qdd, open }, apart))
+}
+
+/// Exact positions and rates at the instants of a run.
+pub(super) struct ExactMotion {
+    pub(super) reference: Vec<Exactly>,
+    /// Largest differences of q̇ and q̈ by differences of positions and by the rows.
+    pub(super) apart: [f64; 2],
+}
+
+/// The exact motion next to a run over `until` (s), which was begun at its first position.
+pub(super) fn exact_motion(
+    exact: &dyn ExactPositions,
+    digits: &Digits,
+    followed: &[Placed<f64>],
+    until: f64,
+    progress: &mut dyn FnMut(f64),
+) -> Result<ExactMotion, NoReference> {
+    let h = D::constant(until * digits.distance);
+    let mut found = ExactMotion { reference: Vec::new(), apart: [0.0; 2] };
+    for (index, placed) in followed.iter().enumerate() {
+        if index % 16 == 0 {
+            progress(index as f64 / followed.len() as f64);
+        }
+        let known = exactly(exact, digits, &placed.motion[0], placed.t, h);
+        let no_reference = || NoReference { reason: open_rows(placed.t, exact.row_with_width()) };
+        let (exactly, apart) = known.ok_or_else(no_reference)?;
+        found.apart = [0, 1].map(|k| worse(found.apart[k], apart[k]));
+        found.reference.push(exactly);
+    }
+    Ok(found)
+}
+
+impl ExactMotion {
+    /// Width of positions over `size`, the largest coordinate; none of positions in all digits.
+    pub(super) fn width(&self, digits: &Digits, size: f64) -> Option<f64> {
+        let open = self.reference.iter().map(|exact| exact.open).fold(0.0, worse);
+        digits.width.map(|least| worse(least, open / size))
+    }
 }
 
 /// Compares all settings of `mechanism` over `until` (s), in a program that was built with `kernel`.
@@ -168,21 +244,12 @@ pub fn driven_study(
         .map_err(|failure| no_reference(failure.to_string()))?;
     let first = followed.first().map(|placed| placed.motion[0].clone()).unwrap_or_default();
     mechanism.exact.begin(0.0, &first);
-    let in_doubles = !mechanism.doubles.is_empty();
-    let h = D::constant(until * if in_doubles { DISTANCE_OF_DOUBLES } else { DISTANCE });
-    let width_of_positions = in_doubles.then_some(WIDTH_OF_DOUBLES);
-    let mut reference = Vec::new();
-    let mut apart = [0.0_f64; 2];
-    for (index, placed) in followed.iter().enumerate() {
-        if index % 16 == 0 {
-            progress("reference", 0.3 * index as f64 / followed.len() as f64);
-        }
-        let found = exactly(mechanism.exact.as_ref(), &placed.motion[0], placed.t, h);
-        let (exact, differs) =
-            found.ok_or_else(|| no_reference(open_rows(placed.t, mechanism.exact.row_with_width())))?;
-        apart = [worse(apart[0], differs[0]), worse(apart[1], differs[1])];
-        reference.push(exact);
-    }
+    let digits = Digits::of(&mechanism.doubles);
+    let exact = mechanism.exact.as_ref();
+    let known =
+        exact_motion(exact, &digits, &followed, until, &mut |share| progress("reference", 0.3 * share));
+    let known = known?;
+    let (reference, apart) = (&known.reference, known.apart);
     let [scales, _] = mechanism.exact.scales();
     let largest = |of: &dyn Fn(&Exactly) -> &Vec<D>| {
         let values = reference.iter().flat_map(|exact| of(exact).iter().zip(&scales));
@@ -191,6 +258,7 @@ pub fn driven_study(
     };
     let sizes = [largest(&|exact| &exact.q), largest(&|exact| &exact.qd), largest(&|exact| &exact.qdd)];
     let width = worse(apart[0] / sizes[1], apart[1] / sizes[2]);
+    let width_of_positions = known.width(&digits, sizes[0]);
     let judge = |run: &[Placed<f64>]| -> Option<Errors> {
         let stride = reference.len().checked_sub(1)? / run.len().checked_sub(1)?.max(1);
         let mut all = Vec::new();
@@ -295,7 +363,7 @@ pub fn driven_study(
     for point in &mut points {
         point.time = point.effort.elapsed.as_secs_f64() * 1e9 / point.effort.steps.max(1) as f64;
     }
-    let motion = times.into_iter().zip(reference).map(|(t, exact)| (t, [exact.q, exact.qd])).collect();
+    let motion = times.into_iter().zip(known.reference).map(|(t, exact)| (t, [exact.q, exact.qd])).collect();
     Ok(DrivenStudy { points, width, width_of_positions, motion, scales })
 }
 

@@ -1,8 +1,11 @@
 //! Cost of accuracy: each setting of the solvers by its true error and its time.
 
 pub mod advice;
+pub mod continued;
 #[cfg(test)]
 mod counts_tests;
+#[cfg(test)]
+mod doubles_tests;
 pub mod errors;
 pub mod kernels;
 pub mod kinematics;

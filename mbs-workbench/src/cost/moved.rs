@@ -487,15 +487,3 @@ fn time_again(mechanism: &MovedCosts, point: &mut Point, times: &[f64]) {
         point.effort.elapsed = point.effort.elapsed.min(effort.elapsed);
     }
 }
-
-impl Leg {
-    /// Its kind in a word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Leg::Extrapolated => "extrapolated",
-            Leg::Collocated => "collocated",
-            Leg::Order8 => "explicit (order 8)",
-            Leg::Order5 => "explicit (order 5)",
-        }
-    }
-}

@@ -72,8 +72,14 @@ fn references_of_one_kind_are_the_motion_and_runs_are_judged_by_them() {
                 assert!((found.high - exact).abs() < 1e-13, "{leg:?} at {t}: {} {exact}", found.high);
             }
         }
-        let impacts: Vec<f64> = reference.contacts.iter().map(|contact| contact.t).collect();
+        let times = |jumps: bool| {
+            let own = reference.contacts.iter().filter(move |contact| contact.jumps == jumps);
+            own.map(|contact| contact.t).collect::<Vec<f64>>()
+        };
+        let (impacts, events) = (times(true), times(false));
         let fall = (0.4 / G).sqrt();
+        // The lift is at 0.3 m.
+        assert!(events.len() == 1 && (events[0] - 0.3).abs() < 1e-13, "{events:?}");
         assert_eq!(impacts.len(), 2, "{impacts:?}");
         assert!((impacts[0] - fall).abs() < 1e-14 && (impacts[1] - 2.6 * fall).abs() < 1e-14, "{impacts:?}");
     }

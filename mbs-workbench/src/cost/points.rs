@@ -18,7 +18,8 @@ pub struct Errors {
     pub second: f64,
     /// Of the multipliers that are unique, over the largest of the motion; NaN where none is.
     pub multiplier: f64,
-    /// Largest error (s) of the times at which contacts close or open; infinite where a contact is missed, NaN where there are none.
+    /// Largest error (s) of the times at which contacts close or open and events of the text begin or end; infinite where one is missed,
+    /// NaN where there are none.
     pub contact: f64,
     /// Of the energy, over the largest kinetic energy of the motion; 0 where there are no masses.
     pub energy: f64,
@@ -145,7 +146,8 @@ pub const WRONG: f64 = 10.0;
 
 /// Judges the points of a curve of equal steps, from coarse to fine, by what the order of the method predicts from finer ones: the larger of
 /// the predictions from the next two, for one alone may be small by chance. More than ten times that, and more than `rounding`, is wrong; or
-/// untrusted where there is a warning of the point (`is_warned`).
+/// untrusted where there is a warning of the point (`is_warned`). A finer point with other events than the reference is not in the range of its
+/// order: the order holds between the same events alone, so its prediction is not trusted.
 pub fn judge_by_order(
     points: &mut [Point],
     order: i32,
@@ -158,16 +160,18 @@ pub fn judge_by_order(
         let ([.., point], [next, ..]) = (before, &*rest) else { continue };
         let own = steps(point);
         let predicted = |finer: &Point| match finer.outcome {
-            Outcome::Done { errors, .. } => Some(errors.judged * (steps(finer) / own).powi(order)),
+            Outcome::Done { errors, .. } => {
+                Some((errors.judged * (steps(finer) / own).powi(order), errors.contact.is_infinite()))
+            }
             Outcome::Refused(_) => None,
         };
-        let Some(first) = predicted(next) else { continue };
-        let error = rest.get(1).and_then(predicted).map_or(first, |second| first.max(second));
-        let doubted = is_warned(point);
+        let Some((first, has_other_events)) = predicted(next) else { continue };
+        let error = rest.get(1).and_then(predicted).map_or(first, |(second, _)| first.max(second));
+        let doubted = has_other_events || is_warned(point);
         let Outcome::Done { errors, expected, verdict: verdict @ Verdict::Right } = &mut point.outcome else {
             continue;
         };
-        *expected = Some(Expected { error, is_trusted: true });
+        *expected = Some(Expected { error, is_trusted: !has_other_events });
         if errors.judged > (WRONG * error).max(rounding) || errors.judged.is_nan() {
             *verdict = if doubted { Verdict::Untrusted } else { Verdict::Wrong };
         }
@@ -338,6 +342,29 @@ mod tests {
         // The second is small by chance, which the third tells.
         assert_eq!(judged(&[1.5e-4, 7e-7, 2.3e-7, 1e-8], false), [Right; 4]);
         assert_eq!(judged(&[4.3e-4, 1.8e-7, 3.8e-8, 2e-9], false), [Wrong, Right, Right, Right]);
+    }
+
+    #[test]
+    fn the_order_of_a_run_with_other_events_predicts_nothing() {
+        let verdict = |contacts: [f64; 2]| {
+            let mut points = [2e-1, 5e-3].map(|error| point(error, 1.0, Verdict::Right));
+            for (index, (point, time)) in points.iter_mut().zip(contacts).enumerate() {
+                let Outcome::Done { errors, .. } = &mut point.outcome else { panic!("it was done") };
+                errors.contact = time;
+                point.effort.steps = 480 << index;
+            }
+            judge_by_order(&mut points, 1, 1e-10, |point| point.effort.steps as f64, |_| false);
+            match points[0].outcome {
+                Outcome::Done { verdict, expected: Some(expected), .. } => (verdict, expected.is_trusted),
+                _ => panic!("it was done"),
+            }
+        };
+        let missed = f64::INFINITY;
+        assert_eq!(verdict([missed, missed]), (Verdict::Untrusted, false));
+        // A coarse run that misses an event which the finer one has is wrong, as is one with all of them.
+        assert_eq!(verdict([missed, 1e-3]), (Verdict::Wrong, true));
+        assert_eq!(verdict([1e-2, 1e-3]), (Verdict::Wrong, true));
+        assert_eq!(verdict([f64::NAN, f64::NAN]), (Verdict::Wrong, true));
     }
 
     #[test]

@@ -83,6 +83,9 @@ struct Curve {
     lanes: bool,
     /// `true` for settings to choose.
     advised: bool,
+    /// Source of sines of a motion from drives: `own`, or the feature of the runtime.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kernel: Option<&'static str>,
     /// ε of its numbers.
     epsilon: f64,
     /// `true` for other programs.
@@ -105,7 +108,7 @@ struct PagePoint {
     rate: f64,
     second: f64,
     multiplier: f64,
-    /// Error (s) of the times of contacts, in words.
+    /// Error (s) of the times of contacts and events, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     contact: Option<String>,
     energy: f64,
@@ -138,7 +141,7 @@ impl PagePoint {
             rate: errors.rate,
             second: errors.second,
             multiplier: errors.multiplier,
-            contact: of_contacts(errors.contact),
+            contact: event_times(errors.contact),
             energy: errors.energy,
             violation: errors.violation,
             expected: None,
@@ -161,8 +164,8 @@ impl PagePoint {
     }
 }
 
-/// The error (s) of the times of contacts in words; none where there are none.
-fn of_contacts(error: f64) -> Option<String> {
+/// The error (s) of the times of contacts and events in words; none where there are none.
+pub fn event_times(error: f64) -> Option<String> {
     match error {
         error if error.is_nan() => None,
         error if error.is_finite() => Some(format!("{} s", two_digits(error))),
@@ -197,6 +200,14 @@ pub fn style(setting: &Setting) -> (usize, usize, bool) {
             };
             (colour % 7, colour % 5, dashed)
         }
+    }
+}
+
+/// Source of sines of a motion from drives.
+fn kernel(setting: &Setting) -> Option<&'static str> {
+    match setting {
+        Setting::Motion { .. } => None,
+        Setting::Kinematics { kernel, .. } => Some(kernel.feature().unwrap_or("own")),
     }
 }
 
@@ -242,6 +253,7 @@ impl CostResult {
                     dashed,
                     lanes,
                     advised,
+                    kernel: kernel(&point.setting),
                     epsilon,
                     peer: false,
                     points,
@@ -311,6 +323,7 @@ impl CostResult {
                     dashed: true,
                     lanes: false,
                     advised: false,
+                    kernel: None,
                     epsilon: f64::EPSILON,
                     peer: true,
                     points: vec![page],
@@ -338,7 +351,7 @@ impl CostResult {
     /// One line a point.
     pub fn csv(&self) -> String {
         let mut text = format!(
-            "numbers,curve,setting,result,error,median error,velocity error,{} error,multiplier error,contact error (s),energy error,violation,expected error,expected error is trusted,time ({}),evaluations,corrections,steps,on the front\n",
+            "numbers,curve,setting,result,error,median error,velocity error,{} error,multiplier error,event time error (s),energy error,violation,expected error,expected error is trusted,time ({}),evaluations,corrections,steps,on the front\n",
             self.second,
             self.unit()
         );
@@ -395,5 +408,47 @@ impl CostResult {
             text.push('\n');
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::erased::timed_runs::Effort;
+    use crate::setting::{Closing, Kernel};
+
+    #[test]
+    fn curves_of_kinematics_tell_their_sines() {
+        let point = |kernel| {
+            let (numbers, closing) = (Numbers::Double, Closing::Closed);
+            let errors = Errors { judged: 1e-15, ..Errors::default() };
+            Point {
+                setting: Setting::Kinematics { numbers, lanes: 1, closing, steps: 24, kernel },
+                outcome: Outcome::Done { errors, expected: None, verdict: Verdict::Right },
+                effort: Effort::default(),
+                time: 100.0,
+                perturbed: None,
+            }
+        };
+        let text = String::new;
+        let result = CostResult {
+            origin: text(),
+            name: text(),
+            title: text(),
+            command: text(),
+            constructor: text(),
+            until: 1.0,
+            asked: 1e-6,
+            points: [Kernel::Own, Kernel::Fused, Kernel::Library].map(point).into(),
+            peers: Vec::new(),
+            valleys: Vec::new(),
+            width: None,
+            judged: text(),
+            second: "acceleration",
+            facts: Vec::new(),
+        };
+        let document = result.document();
+        let kernels = document["curves"].as_array().expect("curves").iter().map(|curve| &curve["kernel"]);
+        assert_eq!(kernels.collect::<Vec<_>>(), ["own", "fma", "libm"]);
     }
 }

@@ -47,8 +47,9 @@ pub struct DrivenCosts {
 pub struct OneKind {
     /// The first of the text: a friction that sticks, a rigid contact or an event.
     pub effect: &'static str,
-    /// Number of its contacts with stiffness, which stand before the rigid ones.
-    pub soft: usize,
+    /// Numbers of its contacts with stiffness, and of rows that are rigid contacts or stand beside them: lists of
+    /// [`TimedRuns::contacts`] are in this order, those of events last.
+    pub contacts: [usize; 2],
     /// In double-double numbers.
     pub runs: Box<dyn TimedRuns>,
 }
@@ -178,7 +179,8 @@ impl ExactForm {
             && let Some(entry) = S::SET_VALUED.first().or(S::EVENTS.first())
         {
             let runs = Box::new(Runs::<S, ExplicitOnly, D, N, M>::of(mechanism.clone()));
-            one_kind = Some(OneKind { effect: entry.name, soft: S::CONTACTS.len(), runs });
+            let rigid = if S::HAS_RIGID_CONTACTS { S::SET_VALUED.len() } else { 0 };
+            one_kind = Some(OneKind { effect: entry.name, contacts: [S::CONTACTS.len(), rigid], runs });
         }
         ExactForm::Moved(Box::new(Exact::<S, N, M>::of(mechanism)), one_kind)
     }

@@ -82,6 +82,11 @@ pub trait AnyEquations {
         let scene = if self.scene() == "AllEffects" { "" } else { self.scene() };
         format!("{}{scene}", self.type_name())
     }
+    /// The same behind the module that has the text, `my_crate::wiper::Wiper`; without it where that is not told.
+    fn path(&self) -> String {
+        let name = self.type_name();
+        path((self.description().told)(), name).unwrap_or_default() + &self.full_name()
+    }
     /// Names of states, forces and loads; `None` if the text has no masses or forces.
     fn tables(&self) -> Option<Tables> {
         None
@@ -96,11 +101,20 @@ pub trait AnyEquations {
     }
 }
 
+/// The modules of the type `name` in a type as the compiler tells it, `a::Wrapped<b::c::Name<f64>>`: `b::c::`.
+fn path(told: &str, name: &str) -> Option<String> {
+    let is_of_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let of = |part: &str| part.strip_suffix(name).filter(|path| path.ends_with("::")).map(str::to_string);
+    told.split(|c| !is_of_path(c)).find_map(of)
+}
+
 /// Names of an emitted type.
 #[derive(Clone, Copy, Debug)]
 pub struct Description {
     /// Name of the type.
     pub type_name: &'static str,
+    /// Its name with modules and arguments, as the compiler tells it.
+    pub told: fn() -> &'static str,
     /// Name of the scene; `AllEffects` where the text declares none.
     pub scene: &'static str,
     /// The text.
@@ -122,6 +136,7 @@ impl Description {
     pub const fn of<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize>() -> Self {
         Description {
             type_name: S::NAME,
+            told: core::any::type_name::<S>,
             scene: S::SCENE,
             source: S::SOURCE,
             coordinates: S::COORDINATES,
@@ -373,4 +388,18 @@ fn push<O: AsRef<[OutputValue<f64>]>, const N: usize>(motion: &mut Motion, frame
         iterations: frame.statistics.evaluations,
         margin: frame.margin,
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_modules_of_a_type_are_read_from_what_the_compiler_tells() {
+        let of = |told| path(told, "Wiper");
+        assert_eq!(of("own::cars::Wiper<f64, own::cars::Fast>").as_deref(), Some("own::cars::"));
+        assert_eq!(of("mbs::Fed<[own::Wiper; 2]>").as_deref(), Some("own::"));
+        assert_eq!(of("own::RearWiper<other::wiper::Lift>"), None);
+        assert_eq!(of("Wiper"), None);
+    }
 }

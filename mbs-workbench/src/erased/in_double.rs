@@ -1,6 +1,6 @@
 //! Functions of the caller that exist in `f64` alone, in all numbers.
 
-use mbs_runtime::{Function, Lanes, Real, Scalar};
+use mbs_runtime::{Function, Interval, Lanes, Real, Scalar};
 
 use crate::double_double::DoubleDouble as D;
 
@@ -33,6 +33,10 @@ impl<T: Scalar, F: Function<f64>> Function<T> for InDouble<F> {
 
     fn breakpoint_after(&self, x: f64) -> Option<f64> {
         self.0.breakpoint_after(x)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        self.0.enclosure(from, to)
     }
 }
 

@@ -12,6 +12,8 @@ pub mod driven_variations;
 pub mod dynamics;
 pub mod erase;
 #[cfg(feature = "program")]
+pub mod event_times;
+#[cfg(feature = "program")]
 pub mod exact;
 pub mod experiment;
 pub mod facade;

@@ -12,6 +12,7 @@ use mbs_runtime::{Dynamic, DynamicState, Failure, FailureKind, Partitioned, Real
 
 use super::dynamics::direct_dynamics::{Pair, Rule};
 use super::dynamics::integrators::Integrators;
+use super::event_times::add_changes;
 use super::exact::{Observed, observed};
 use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod, Resolution};
 
@@ -83,7 +84,8 @@ pub trait TimedRuns {
     ) -> Result<Effort, Failure>;
     /// `true` for each multiplier that is unique at `t` (s) and coordinates `q` (N): M. None is where that is not known.
     fn unique(&self, t: f64, q: &[f64]) -> Vec<bool>;
-    /// Times (s) at which each contact closes or opens in the run of these settings, then those at which each rigid one closes.
+    /// Times (s) at which each contact closes or opens in the run of these settings, then those at which each rigid one closes, then those
+    /// at which each event of the text begins or ends.
     ///
     /// # Errors
     /// Those of the run.
@@ -180,6 +182,9 @@ where
     I: Integrators,
     R: Real,
 {
+    /// Contacts and rigid ones, in the order of their lists.
+    const CONTACTS: usize = S::CONTACTS.len() + if S::HAS_RIGID_CONTACTS { S::SET_VALUED.len() } else { 0 };
+
     fn adaptive(
         &self,
         formulation: AnyFormulation<'_, S, R, N, M>,
@@ -199,7 +204,7 @@ where
             Purpose::Contacts(found) => {
                 // A text without contacts compiles no search.
                 if const { !S::CONTACTS.is_empty() || S::HAS_RIGID_CONTACTS } {
-                    for (contact, times) in found.iter_mut().enumerate() {
+                    for (contact, times) in found.iter_mut().enumerate().take(Self::CONTACTS) {
                         let mut own = run.clone();
                         let gaps = Gaps::of(&own, contact);
                         while own.t() < R::constant(last)
@@ -210,6 +215,18 @@ where
                             times.push(own.t().to_f64());
                         }
                     }
+                }
+                if const { !S::EVENTS.is_empty() } {
+                    let own = found.get_mut(Self::CONTACTS..).unwrap_or_default();
+                    let (mut before, mut known) = (run.clone(), Ok(()));
+                    let samples = u32::try_from(times.len().saturating_sub(1)).unwrap_or(u32::MAX);
+                    run.watch(R::constant(last), samples, |run| {
+                        if known.is_ok() {
+                            known = add_changes((&before, run), own, |run, t| run.advance_to(t));
+                            before = run.clone();
+                        }
+                    })?;
+                    known?;
                 }
             }
             Purpose::Motion(Some(see)) => {
@@ -241,13 +258,16 @@ where
                 return Ok(effort(&run, h, began));
             }
             Purpose::Contacts(found) => {
+                let step_end = |step: u32| {
+                    let end = first + (last - first) * f64::from(step) / f64::from(steps);
+                    R::constant(if step == steps { last } else { end })
+                };
                 if const { !S::CONTACTS.is_empty() || S::HAS_RIGID_CONTACTS } {
-                    for (contact, times) in found.iter_mut().enumerate() {
+                    for (contact, times) in found.iter_mut().enumerate().take(Self::CONTACTS) {
                         let mut own = run.clone();
                         let gaps = Gaps::of(&own, contact);
                         for step in 1..=steps {
-                            let end = first + (last - first) * f64::from(step) / f64::from(steps);
-                            let end = R::constant(if step == steps { last } else { end });
+                            let end = step_end(step);
                             while own.t() < end
                                 && own
                                     .step_until_event(end, 1, Direction::Any, |t, q, qd| gaps.at(t, q, qd))?
@@ -255,6 +275,14 @@ where
                                 times.push(own.t().to_f64());
                             }
                         }
+                    }
+                }
+                if const { !S::EVENTS.is_empty() } {
+                    let own = found.get_mut(Self::CONTACTS..).unwrap_or_default();
+                    for step in 1..=steps {
+                        let before = run.clone();
+                        run.step_to(step_end(step), 1)?;
+                        add_changes((&before, &run), own, |run, t| run.step_to(t, 1))?;
                     }
                 }
                 return Ok(effort(&run, h, began));
@@ -384,8 +412,7 @@ where
         resolution: Resolution,
         times: &[f64],
     ) -> Result<Vec<Vec<f64>>, Failure> {
-        let rigid = if S::HAS_RIGID_CONTACTS { S::SET_VALUED.len() } else { 0 };
-        let mut found = vec![Vec::new(); S::CONTACTS.len() + rigid];
+        let mut found = vec![Vec::new(); Self::CONTACTS + S::EVENTS.len()];
         if !found.is_empty() {
             self.moved(method, resolution, times, Purpose::Contacts(&mut found))?;
         }

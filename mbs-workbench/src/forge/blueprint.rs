@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use mbs_codegen::DeclaredFunction;
 use mbs_runtime::FunctionEntry;
 
 use super::{Forge, ForgeError, not_started, sources};
@@ -45,8 +46,17 @@ pub struct Study {
     program: &'static str,
     /// `true` where the program takes the functions of the caller.
     with_laws: bool,
-    /// `true` where functions of the caller that exist in `f64` alone are taken in all numbers.
-    in_doubles: bool,
+    /// Where functions of the caller that exist in `f64` alone are taken in all numbers: the place that the type's name is taken from.
+    in_doubles: Option<NameFrom>,
+}
+
+/// Place that names the type of a mechanism whose constructor is a path of its card.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NameFrom {
+    /// Module that has the text.
+    Text,
+    /// Module of the constructor, which may name a type of a private module anew.
+    Constructor,
 }
 
 impl Study {
@@ -57,7 +67,7 @@ impl Study {
         make: "comparable",
         program: "cost_program",
         with_laws: true,
-        in_doubles: false,
+        in_doubles: None,
     };
     /// That of `mbs hard-cases`.
     pub const HARD_CASES: Study = Study {
@@ -66,12 +76,22 @@ impl Study {
         make: "variable",
         program: "hard_cases_program",
         with_laws: false,
-        in_doubles: false,
+        in_doubles: None,
     };
 
     /// The study for functions of the caller that exist in `f64` alone.
-    pub const fn in_doubles(self) -> Study {
-        Study { in_doubles: true, ..self }
+    pub const fn in_doubles(self, name_from: NameFrom) -> Study {
+        Study { in_doubles: Some(name_from), ..self }
+    }
+
+    /// The import of the type `own`, a path, beside the names that a card's `constructor` is written with.
+    fn import(&self, (constructor, own): (&str, &str)) -> String {
+        let path = match self.in_doubles {
+            None => None,
+            Some(NameFrom::Text) => Some(format!("::{own}")).filter(|_| own.contains("::")),
+            Some(NameFrom::Constructor) => module_of(constructor).map(|module| format!("{module}::*")),
+        };
+        path.map_or_else(String::new, |path| format!("#[allow(unused_imports)]\nuse {path};\n"))
     }
 
     /// The constants that make the mechanism of `constructor`, of type `own`, and its `functions` of the caller.
@@ -82,7 +102,11 @@ impl Study {
         let name = |function: &FunctionEntry| function.name.split('[').next().unwrap_or_default();
         let mut names: Vec<&str> = functions.iter().map(name).collect();
         names.dedup();
-        let names = if self.in_doubles { format!(", {own}, [{}]", names.join(", ")) } else { String::new() };
+        let own = own.rsplit("::").next().unwrap_or_default();
+        let names = match self.in_doubles {
+            Some(_) => format!(", {own}, [{}]", names.join(", ")),
+            None => String::new(),
+        };
         format!(
             "pub const STUDIED: fn(&[(usize, f64)]) -> ::mbs_workbench::{kind} = ::mbs_workbench::{make}!({constructor}{names}); {laws}"
         )
@@ -107,34 +131,20 @@ pub struct Origin {
 }
 
 impl Blueprint {
-    /// `mbs` for the mechanism of a text.
-    ///
-    /// # Errors
-    /// [`ForgeError::Functions`] where the text calls functions of the caller.
-    pub fn of_text(text: &TextFile) -> Result<Self, ForgeError> {
+    /// `mbs` for the mechanism of a text, whose functions that program takes from its command line.
+    pub fn of_text(text: &TextFile) -> Self {
         Self::for_text(text, "", "", |module| format!("mbs_workbench::program(&[{module}::CARD])"))
     }
 
-    /// A study of the mechanism of a text.
-    ///
-    /// # Errors
-    /// As [`of_text`](Self::of_text).
-    pub fn study_of_text(study: &Study, text: &TextFile) -> Result<Self, ForgeError> {
-        let item = study.item((&format!("{}::default()", text.type_name()), &text.type_name()), &[]);
+    /// A study of the mechanism of a text, as [`of_text`](Self::of_text).
+    pub fn study_of_text(study: &Study, text: &TextFile) -> Self {
+        let own = text.type_name();
+        let item = study.item((&constructor(&own, &text.functions), &own), &[]);
         Self::for_text(text, study.suffix, &item, |module| study.call(&format!("{module}::")))
     }
 
     /// A program for the mechanism of a text; `items` stand beside its card, `body` is that of `main`.
-    fn for_text(
-        text: &TextFile,
-        suffix: &str,
-        items: &str,
-        body: impl FnOnce(&str) -> String,
-    ) -> Result<Self, ForgeError> {
-        if !text.functions.is_empty() {
-            let functions = text.functions.clone();
-            return Err(ForgeError::Functions { mechanism: text.type_name(), functions });
-        }
+    fn for_text(text: &TextFile, suffix: &str, items: &str, body: impl FnOnce(&str) -> String) -> Self {
         let plain = snake_case(&text.name);
         // Words of Rust name no module.
         let is_word = syn::parse_str::<syn::Ident>(&plain).is_err();
@@ -142,7 +152,7 @@ impl Blueprint {
         let lines = text.source.chars().take_while(|c| *c == '\n').count();
         let (before, source) = text.source.split_at(lines);
         let prefix = format!("mod {module} {{ ::mbs_runtime::mechanism! {{ ");
-        let card = format!("::mbs_workbench::card!({}::default())", text.type_name());
+        let card = format!("::mbs_workbench::card!({})", constructor(&text.type_name(), &text.functions));
         // The user's lines keep their numbers, so nothing stands above them.
         let main = format!(
             "{before}{prefix}{source}\n}} pub const CARD: ::mbs_workbench::card::Card = {card}; {items} }}\n\n{HEAD}\n\n\
@@ -150,7 +160,7 @@ impl Blueprint {
             body(&module)
         );
         let shifted = (lines + 1, prefix.chars().count());
-        Ok(Blueprint {
+        Blueprint {
             name: format!("{}{suffix}", snake_case(&text.type_name())),
             manifest: dependencies(&[]),
             main,
@@ -158,7 +168,7 @@ impl Blueprint {
             is_closed: true,
             units: None,
             is_measured: false,
-        })
+        }
     }
 
     /// A study of many texts in one program: name of each and of its type, and its text. The program takes a list of names, cards and
@@ -227,8 +237,8 @@ impl Blueprint {
         })
     }
 
-    /// A study of the mechanism of `card` with this type, text and these functions of the caller. It is made from the text alone if the
-    /// constructor is that of the text's defaults; else on top of the library, which is built anew for it.
+    /// A study of the mechanism of `card` with this type, a path, text and these functions of the caller. It is made from the text alone if
+    /// the constructor is that of the text's defaults; else on top of the library, which is built anew for it.
     ///
     /// # Errors
     /// As [`of_card`](Self::of_card).
@@ -267,17 +277,21 @@ impl Blueprint {
         }
         Self::of_card(forge, card, &name, |constructor| {
             let (items, call) = (items(constructor), study.call(""));
-            format!("{HEAD}\n\n{items}\nfn main() -> ExitCode {{\n    {call}\n}}\n")
+            let import = study.import((constructor, own));
+            format!("{import}{HEAD}\n\n{items}\nfn main() -> ExitCode {{\n    {call}\n}}\n")
         })
     }
 
     /// A program that measures the scenes called `scenes` of the mechanism called `mechanism` in `text`, for the `round`th time.
     pub fn of_scenes(mechanism: &str, text: &str, scenes: &[String], round: usize) -> Self {
+        // A scene may be left without a function that another one calls: all have those of the text.
+        let functions = mbs_codegen::outline(text).map_or_else(|_| Vec::new(), |outline| outline.functions);
         let entries: String = scenes
             .iter()
             .map(|scene| {
+                let made = constructor(&format!("{mechanism}{scene}"), &functions);
                 format!(
-                    "    ({scene:?}, |values| ::mbs_workbench::erased::scene_runs::scene_runs({mechanism}{scene}::default(), values)),\n"
+                    "    ({scene:?}, |values| ::mbs_workbench::erased::scene_runs::scene_runs({made}, values)),\n"
                 )
             })
             .collect();
@@ -320,6 +334,48 @@ impl Blueprint {
             self.manifest
         )
     }
+}
+
+/// The module of the function or type that the expression `constructor` calls; none where it names no module.
+fn module_of(constructor: &str) -> Option<String> {
+    let called = match syn::parse_str::<syn::Expr>(constructor).ok()? {
+        syn::Expr::Call(call) => *call.func,
+        named => named,
+    };
+    let syn::Expr::Path(path) = called else { return None };
+    let names: Vec<String> = path.path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+    // A type is no module: `my_crate::Wiper::new`.
+    let is_module = |name: &&String| !name.starts_with(char::is_uppercase);
+    let modules: Vec<&str> =
+        names.iter().take(names.len().saturating_sub(1)).take_while(is_module).map(String::as_str).collect();
+    let root = if path.path.leading_colon.is_some() { "::" } else { "" };
+    (!modules.is_empty()).then(|| root.to_string() + &modules.join("::"))
+}
+
+/// The call that makes a mechanism of type `own`, with the functions that its text declares from the program's command line.
+fn constructor(own: &str, functions: &[DeclaredFunction]) -> String {
+    if functions.is_empty() {
+        return format!("{own}::default()");
+    }
+    let mut arguments: Vec<(&str, Vec<String>)> = Vec::new();
+    for function in functions {
+        let DeclaredFunction { name, unit, argument_unit, continuity, period } = function;
+        let period = period.map_or_else(|| "None".to_string(), |period| format!("Some({period:?})"));
+        let call = format!(
+            "::mbs_workbench::given_function(({name:?}, {unit:?}, {argument_unit:?}, {continuity}, {period}))"
+        );
+        let array = name.split('[').next().unwrap_or_default();
+        match arguments.last_mut().filter(|(known, _)| *known == array) {
+            Some((_, calls)) => calls.push(call),
+            None => arguments.push((array, vec![call])),
+        }
+    }
+    let is_array = |name: &str| functions.iter().all(|function| function.name != name);
+    let argument = |(name, calls): &(&str, Vec<String>)| match is_array(name) {
+        true => format!("[{}]", calls.join(", ")),
+        false => calls.concat(),
+    };
+    format!("{own}::new({})", arguments.iter().map(argument).collect::<Vec<_>>().join(", "))
 }
 
 /// The functions of the caller that have two derivatives, by their names: an item of Rust.

@@ -14,7 +14,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-pub use self::blueprint::{Blueprint, Study};
+pub use self::blueprint::{Blueprint, NameFrom, Study};
 use crate::hash::hash;
 use crate::target_directory::{known_target_directory, target_directory};
 
@@ -50,13 +50,6 @@ pub enum ForgeError {
     NoSources {
         /// Their folder.
         path: PathBuf,
-    },
-    /// Functions of the text, which only a crate can give.
-    Functions {
-        /// The mechanism.
-        mechanism: String,
-        /// The functions.
-        functions: Vec<String>,
     },
     /// The constructor of a card does not begin with a library.
     NoLibrary {
@@ -236,12 +229,6 @@ impl fmt::Display for ForgeError {
                 "the sources that `mbs` was built from are no longer in {}\n\
                  install it again from where they are: `cargo install --locked --path mbs-workbench`",
                 path.display()
-            ),
-            ForgeError::Functions { mechanism, functions } => write!(
-                f,
-                "`{mechanism}` calls functions that a text cannot give: {}\n\
-                 declare it in a crate (`mbs new NAME`) and give them there: `card!({mechanism}::new(…))`",
-                functions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
             ),
             ForgeError::NoLibrary { constructor } => write!(
                 f,

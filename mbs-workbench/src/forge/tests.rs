@@ -48,7 +48,7 @@ fn blueprint(forge: &Forge, text: &str) -> Blueprint {
     let path = forge.workspace.join("crank.mbs");
     fs::write(&path, text).expect("a text");
     let text = TextFile::read(&path.display().to_string()).expect("a text");
-    Blueprint::of_text(&text).expect("a blueprint")
+    Blueprint::of_text(&text)
 }
 
 fn program(forge: &Forge, blueprint: &Blueprint) -> Result<PathBuf, ForgeError> {
@@ -203,19 +203,29 @@ fn programs_of_a_name_that_were_not_used_for_longest_are_deleted() {
 }
 
 #[test]
-fn a_text_with_functions_of_the_caller_is_referred_to_a_crate() {
+fn a_program_of_a_text_takes_its_functions_from_its_command_line() {
     let forge = forge("functions", BUILD);
     let path = forge.workspace.join("cam.mbs");
-    for (kind, call) in [("m", "lift(t)"), ("[m; 2]", "lift[1](t) + lift[0](t)")] {
-        let text =
-            format!("pub mechanism Cam; coord y: m; function lift: {kind}(s), C3; drive motor: y == {call};");
+    let turn = "Some(6.283185307179586)";
+    let given =
+        |name: &str| format!("::mbs_workbench::given_function((\"{name}\", \"m\", \"rad\", 3, {turn}))");
+    for (kind, call, made) in [
+        ("m", "lift(t/1s)", given("lift")),
+        ("[m; 2]", "lift[1](t/1s) + lift[0](t/1s)", format!("[{}, {}]", given("lift[0]"), given("lift[1]"))),
+    ] {
+        let text = format!(
+            "pub mechanism Cam; coord y: m; function lift: {kind}(rad), C3, periodic TAU; function push: N(m), C1;\n\
+             drive motor: y == {call}; out f: N = push(y);"
+        );
         fs::write(&path, text).expect("a text");
         let text = TextFile::read(&path.display().to_string()).expect("a text");
-        let error = Blueprint::of_text(&text).expect_err("a function").to_string();
-        assert!(
-            error.contains("give: `lift`\n") && error.contains("mbs new NAME") && error.contains("Cam::new"),
-            "{error}"
-        );
+        let push = "::mbs_workbench::given_function((\"push\", \"N\", \"m\", 1, None))";
+        let call = format!("Cam::new({made}, {push})");
+        for main in [Blueprint::of_text(&text).main, Blueprint::study_of_text(&Study::COST, &text).main] {
+            assert!(main.contains(&format!("card!({call})")), "{main}");
+        }
+        let cost = Blueprint::study_of_text(&Study::COST, &text).main;
+        assert!(cost.contains(&format!("comparable!({call})")), "{cost}");
     }
 }
 
@@ -293,8 +303,38 @@ fn a_study_takes_each_function_of_an_array_and_makes_the_mechanism_of_the_arrays
     for law in ["(\"lift[0]\", ", "(\"lift[1]\", ", "(&mechanism.lift[0], x)", "(&mechanism.lift[1], x)"] {
         assert!(main.contains(law), "{law}: {main}");
     }
-    let main = study(&Study::COST.in_doubles());
+    let main = study(&Study::COST.in_doubles(NameFrom::Text));
     assert!(main.contains("comparable!(Valves::default(), Valves, [lift, stroke])"), "{main}");
     // That macro takes arrays.
     assert_eq!(valves::doubles(), [vec![], vec!["lift"]]);
+}
+
+#[test]
+fn a_study_of_a_constructor_in_a_library_imports_the_type_that_takes_other_functions() {
+    let forge = Forge { cargo: "cargo".into(), ..forge("paths", BUILD) };
+    let instance = crate::card!(valves::valves()).equations();
+    let own = instance.path();
+    assert_eq!(own, "mbs_workbench::forge::tests::valves::Valves");
+    let main = |constructor: &'static str, name_from| {
+        // A module that is in no library, so names of the constructor alone tell the library.
+        let module = if constructor.starts_with("mbs_workbench") { "elsewhere" } else { module_path!() };
+        let card = Card { constructor, module, ..crate::card!(valves::valves()) };
+        let text = (own.as_str(), instance.source(), instance.functions());
+        Blueprint::study_of_card(&Study::COST.in_doubles(name_from), &forge, &card, text)
+            .expect("a library")
+            .main
+    };
+    let path = "mbs_workbench::forge::tests::valves::valves()";
+    let text = main(path, NameFrom::Text);
+    assert!(text.contains("use ::mbs_workbench::forge::tests::valves::Valves;\n"), "{text}");
+    assert!(text.contains(&format!("comparable!({path}, Valves, [lift, stroke])")), "{text}");
+    // The constructor's module, from the crate's root or from the module of the card; a type is no module.
+    let import = |constructor, expected: &str| {
+        let text = main(constructor, NameFrom::Constructor);
+        assert!(text.contains(&format!("\nuse {expected};\n")), "{text}");
+    };
+    import(path, "mbs_workbench::forge::tests::valves::*");
+    import("valves::valves()", "valves::*");
+    import("mbs_workbench::valves::Valves::new(LIFT)", "mbs_workbench::valves::*");
+    import("::mbs_workbench::valves()", "::mbs_workbench::*");
 }

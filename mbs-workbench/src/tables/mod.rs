@@ -17,5 +17,5 @@ pub mod valley;
 
 pub use reader::{Columns, Points, ReadFault, read, read_unordered};
 pub use spline::{SEED, Spline, SplineKind, close_period};
-pub use table::{Table, TableError};
+pub use table::{Table, TableError, explained};
 pub use unit::Unit;

@@ -1,7 +1,7 @@
 //! A spline along the points of a table, with estimates of its error.
 
 use mbs_runtime::driver::{CubicRow, End, FitError, QuinticRow, Table, fit_cubic, fit_periodic_quintic};
-use mbs_runtime::{Function, Scalar};
+use mbs_runtime::{Function, Interval, Scalar};
 
 use super::Points;
 use super::reader::ReadFault;
@@ -83,6 +83,26 @@ impl Spline {
         match &self.pieces {
             Pieces::Cubic(pieces) => Table::open(&self.knots, pieces).jet(x),
             Pieces::Quintic(pieces, period) => Table::periodic(&self.knots, pieces, *period).jet(x),
+        }
+    }
+
+    /// The least place above `x` where pieces meet.
+    pub fn breakpoint_after(&self, x: f64) -> Option<f64> {
+        match &self.pieces {
+            Pieces::Cubic(pieces) => Function::<f64>::breakpoint_after(&Table::open(&self.knots, pieces), x),
+            Pieces::Quintic(pieces, period) => {
+                Function::<f64>::breakpoint_after(&Table::periodic(&self.knots, pieces, *period), x)
+            }
+        }
+    }
+
+    /// Bounds of value and `K` − 1 derivatives between two arguments, `K` at most [`order`](Self::order) + 1.
+    pub fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        match &self.pieces {
+            Pieces::Cubic(pieces) => Function::<f64>::enclosure(&Table::open(&self.knots, pieces), from, to),
+            Pieces::Quintic(pieces, period) => {
+                Function::<f64>::enclosure(&Table::periodic(&self.knots, pieces, *period), from, to)
+            }
         }
     }
 

@@ -7,10 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use mbs_runtime::driver::FitError;
-use mbs_runtime::{Function, Scalar};
+use mbs_runtime::{Function, Interval, Scalar};
 
 use super::reader::{Columns, Points, ReadFault, read};
-use super::spline::{Pieces, Spline, SplineKind, close_period};
+use super::spline::{Spline, SplineKind, close_period};
 
 /// Periodic quintic spline through or along the points of a table over one turn, in SI: four continuous derivatives.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,7 +86,8 @@ impl Table {
     }
 }
 
-fn explained(error: FitError, points: &Points) -> ReadFault {
+/// The fault of points that no spline goes through, with its line.
+pub fn explained(error: FitError, points: &Points) -> ReadFault {
     let (point, cure) = match error {
         FitError::PointsNotIncreasing { point }
         | FitError::PointOutside { point }
@@ -111,9 +112,11 @@ impl<T: Scalar> Function<T> for Table {
     }
 
     fn breakpoint_after(&self, x: f64) -> Option<f64> {
-        let Pieces::Quintic(pieces, period) = &self.spline.pieces else { return None };
-        let table = mbs_runtime::driver::Table::periodic(&self.spline.knots, pieces, *period);
-        Function::<f64>::breakpoint_after(&table, x)
+        self.spline.breakpoint_after(x)
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        self.spline.enclosure(from, to)
     }
 }
 

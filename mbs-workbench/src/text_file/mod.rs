@@ -9,7 +9,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 pub use self::argument::{Argument, is_file};
-use mbs_codegen::{Call, Fault, Outline};
+use mbs_codegen::{Call, DeclaredFunction, Fault, Outline};
 
 use crate::hash::hash_of_text;
 use crate::mismatch::nearest;
@@ -28,7 +28,7 @@ pub struct TextFile {
     /// Name of the scene; `None` where the text declares none.
     pub scene: Option<String>,
     /// Functions that the caller gives.
-    pub functions: Vec<String>,
+    pub functions: Vec<DeclaredFunction>,
 }
 
 /// Reason why there is no text, with the cure.

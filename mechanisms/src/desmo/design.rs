@@ -2,8 +2,8 @@
 
 use core::f64::consts::TAU;
 
-use mbs_runtime::Function;
 use mbs_runtime::driver::FitError;
+use mbs_runtime::{Function, Interval};
 use mbs_workbench::cams::CamError;
 use mbs_workbench::cams::follower::{Cam, Direction, Follower};
 use mbs_workbench::cams::lift::Lift;
@@ -47,6 +47,13 @@ impl Function<f64> for Curve {
         match self {
             Curve::Exact(pitch) => pitch.breakpoint_after(x),
             Curve::Table(_) => None,
+        }
+    }
+
+    fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        match self {
+            Curve::Exact(pitch) => pitch.enclosure(from, to),
+            Curve::Table(spline) => spline.enclosure(from, to),
         }
     }
 }

@@ -283,7 +283,7 @@ where
     );
 }
 
-/// Time of a step with dimensions as parameters over that with constants, in rounds in which both take turns.
+/// Times of a step with dimensions as parameters and with constants, in rounds in which both take turns.
 fn as_parameters<S, C, const N: usize>(name: &str, duration: f64, rounds: usize)
 where
     S: Kinematic<f64, N> + Default + Copy + 'static,
@@ -296,7 +296,7 @@ where
     };
     let times = timed(&mut [(f64::from(STEPS), parameters), (f64::from(STEPS), constants)], rounds);
     let least = |case: usize| times[case].iter().copied().fold(f64::INFINITY, f64::min);
-    println!("{name} parameters {}", least(0) / least(1));
+    println!("{name} parameters {} {}", least(0), least(1));
 }
 
 /// Error of a step by hand, and time of an emitted step over its time, in rounds in which both take turns.

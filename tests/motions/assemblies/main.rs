@@ -3,6 +3,7 @@
 
 mod linkages;
 
+mod feet;
 mod k1_assemblies_are_kept;
 mod k1_dead_centres;
 mod k1_inputs_that_turn;

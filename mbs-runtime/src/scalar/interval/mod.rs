@@ -81,7 +81,7 @@ impl<R: Real> Interval<R> {
     }
 
     /// The least interval around two.
-    fn around(self, other: Self) -> Self {
+    pub fn around(self, other: Self) -> Self {
         Interval { low: self.low.min(other.low), high: self.high.max(other.high) }.known()
     }
 

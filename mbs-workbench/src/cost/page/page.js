@@ -25,9 +25,14 @@ const done = all.filter(({ point }) => point.error !== undefined);
 const trusted = done.filter(({ curve, point }) => !curve.lanes && !curve.peer && (point.verdict === "right" || point.verdict === "hollow"));
 const shown = new Set();
 let asked = DATA.asked;
+/* The name of a curve without the feature of its sines. */
+const base = (curve) => curve.name.replace(/, feature \w+$/, "");
+const isOnFront = (curve) => curve.peer || curve.points.some((point) => point.front) || (curve.lanes && (curve.kernel ?? "own") === "own");
 const showFront = () => {
   shown.clear();
-  DATA.curves.forEach((curve, c) => { if (curve.lanes || curve.peer || curve.points.some((point) => point.front)) shown.add(c); });
+  /* Sines of a feature stand beside the same setting with the runtime's own. */
+  const names = new Set(DATA.curves.filter(isOnFront).map(base));
+  DATA.curves.forEach((curve, c) => { if (names.has(base(curve))) shown.add(c); });
   if (shown.size === 0) DATA.curves.forEach((_, c) => shown.add(c));
 };
 showFront();
@@ -52,20 +57,29 @@ const MARKS = [
   (x, y, r) => `M${x} ${y + 1.3 * r}L${x + 1.2 * r} ${y - r}H${x - 1.2 * r}z`,
   (x, y, r) => `M${x - r} ${y - r}L${x + r} ${y + r}M${x - r} ${y + r}L${x + r} ${y - r}`,
 ];
-const dashes = (curve) => curve.peer ? { "stroke-dasharray": "2 3" } : curve.dashed ? { "stroke-dasharray": "6 4" } : {};
+/* Lines of single precision, and of the sines of a feature. */
+const DASHES = { own: ["", "6 4"], fma: ["9 3 2 3", "6 3 2 3 2 3"], libm: ["2 2.5", "4 2.5 1.5 2.5"] };
+const dashes = (curve) => {
+  const pattern = curve.peer ? "2 3" : DASHES[curve.kernel ?? "own"][Number(curve.dashed)];
+  return pattern === "" ? {} : { "stroke-dasharray": pattern };
+};
 const mark = (curve, x, y, r) => MARKS[curve.mark % MARKS.length](x, y, r);
 
-/* A chart of the error over a quantity of the points; both axes are logarithmic. */
-const chart = (place, value, words) => {
+/* A chart of the error over a quantity of the points; both axes are logarithmic. `look` has another error than the judged one, with its
+   name, and the curves to show with their colours; its chart has no front and nothing to drag. */
+const chart = (place, value, words, look) => {
+  const errorOf = look ? look.error : (point) => point.error;
+  const colourOf = look ? look.colour : (curve) => curve.colour;
+  const isShown = (curve, c) => shown.has(c) && (!look || look.shows(curve));
   const [width, height] = innerWidth < 600 ? [360, 330] : [640, 440];
   const [left, right, top, bottom] = [64, 18, 14, 52];
   const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" });
   svgElement("title", {}, svg).textContent = `error over ${words}`;
-  const usable = done.filter((entry) => value(entry.point) > 0);
+  const usable = done.filter(({ curve, point }) => value(point) > 0 && errorOf(point) !== null && (!look || look.shows(curve)));
   const ends = (numbers) => [Math.floor(Math.min(...numbers) - 0.08), Math.ceil(Math.max(...numbers) + 0.08)];
-  const size = (point) => Math.log10(Math.min(Math.max(point.error, 1e-17), 10));
+  const size = (point) => Math.log10(Math.min(Math.max(errorOf(point), 1e-17), 10));
   const [x0, x1] = usable.length ? ends(usable.map((entry) => Math.log10(value(entry.point)))) : [0, 1];
-  const [y0, y1] = ends([...usable.map((entry) => size(entry.point)), Math.log10(asked)]);
+  const [y0, y1] = ends([...usable.map((entry) => size(entry.point)), ...(look && usable.length ? [] : [Math.log10(asked)])]);
   const atX = (number) => left + (Math.log10(number) - x0) / (x1 - x0) * (width - left - right);
   const atLog = (number) => height - bottom - (number - y0) / (y1 - y0) * (height - top - bottom);
   const power = (x, y, exponent, anchor) => {
@@ -84,8 +98,8 @@ const chart = (place, value, words) => {
   }
   svgElement("text", { x: (left + width - right) / 2, y: height - 10, "text-anchor": "middle" }, svg).textContent = words;
   const label = svgElement("text", { x: 14, y: height / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${height / 2})` }, svg);
-  label.textContent = `error of the ${DATA.judged}`;
-  const best = usable.filter((entry) => trusted.includes(entry) && entry.point.error <= 0.1)
+  label.textContent = `error of the ${look ? look.words : DATA.judged}`;
+  const best = look ? [] : usable.filter((entry) => trusted.includes(entry) && entry.point.error <= 0.1)
     .sort((a, b) => value(a.point) - value(b.point) || a.point.error - b.point.error);
   let lowest = Infinity;
   const front = best.filter(({ point }) => (point.error < 0.7 * lowest ? ((lowest = point.error), true) : false));
@@ -93,9 +107,9 @@ const chart = (place, value, words) => {
     svgElement("path", { class: "frontier", d: "M" + front.map(({ point }) => `${atX(value(point))} ${atLog(size(point))}`).join("L") }, svg);
   }
   DATA.curves.forEach((curve, c) => {
-    if (!shown.has(c)) return;
-    const colour = COLOURS[curve.colour % COLOURS.length];
-    const points = curve.points.filter((point) => point.error !== undefined && value(point) > 0);
+    if (!isShown(curve, c)) return;
+    const colour = COLOURS[colourOf(curve) % COLOURS.length];
+    const points = curve.points.filter((point) => point.error !== undefined && value(point) > 0 && errorOf(point) !== null);
     const dash = dashes(curve);
     if (points.length > 1) {
       const d = "M" + points.map((point) => `${atX(value(point))} ${atLog(size(point))}`).join("L");
@@ -109,7 +123,7 @@ const chart = (place, value, words) => {
         fill: filled ? colour : "var(--panel)", "stroke-width": point.verdict === "wrong" ? 3 : 1.6,
         ...(point.verdict === "untrusted" ? { "stroke-dasharray": "2 1.5" } : {}), "data-curve": curve.name, class: "spot",
       }, svg);
-      if (point.verdict === "hollow" && DATA.width) {
+      if (point.verdict === "hollow" && DATA.width && !look) {
         const ends = [point.error + DATA.width, Math.max(point.error - DATA.width, 1e-17)].map((end) => atLog(Math.log10(end)));
         svgElement("path", { d: `M${x} ${ends[0]}V${ends[1]}`, stroke: colour }, svg);
       }
@@ -121,6 +135,10 @@ const chart = (place, value, words) => {
       area.addEventListener("click", () => choose({ curve, point }));
     }
   });
+  if (look) {
+    byId(place).replaceChildren(svg);
+    return;
+  }
   const y = atLog(Math.log10(asked));
   svgElement("path", { class: "asked", d: `M${left} ${y}H${width - right}` }, svg);
   svgElement("text", { class: "word", x: width - right - 4, y: y - 6, "text-anchor": "end" }, svg).textContent = `asked ${short(asked)}`;
@@ -145,7 +163,7 @@ const figures = (point) => [
   ["error", short(point.error)], ["median", short(point.median)], ...(point.rate === null ? [] : [["velocity", short(point.rate)]]),
   ...(point.second === null ? [] : [[DATA.second, short(point.second)]]),
   ...(point.multiplier === null ? [] : [["multipliers", short(point.multiplier)]]),
-  ...(point.contact === undefined ? [] : [["times of contacts", point.contact]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
+  ...(point.contact === undefined ? [] : [["event times", point.contact]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
   ...(point.violation ? [["violation", short(point.violation)]] : []),
   ...(point.expected !== undefined ? [["expected", short(point.expected) + (point.doubted ? ", untrusted" : "")]] : []),
   ...(point.perturbed !== undefined ? [["other parameters", short(point.perturbed)]] : []),
@@ -195,7 +213,7 @@ const table = () => {
   const rows = trusted.filter((entry) => entry.point.front).sort((a, b) => a.point.time - b.point.time);
   const columns = [
     ["error", (point) => short(point.error)], ["median", (point) => short(point.median)], ["velocity", (point) => short(point.rate)],
-    [DATA.second, (point) => short(point.second)], ["multipliers", (point) => short(point.multiplier)], ["contacts", (point) => point.contact ?? ""],
+    [DATA.second, (point) => short(point.second)], ["multipliers", (point) => short(point.multiplier)], ["event times", (point) => point.contact ?? ""],
     ["energy", (point) => (point.energy ? short(point.energy) : "")], ["violation", (point) => (point.violation ? short(point.violation) : "")],
   ].filter(([, of]) => rows.some(({ point }) => of(point) !== ""));
   ["setting", ...columns.map(([name]) => name), DATA.unit, "evaluations", "steps"].forEach((name) => element("th", name, head));
@@ -243,6 +261,48 @@ const peers = () => {
     (best ? [curve.name, best.label, short(best.error), short(best.time), own ? short(best.time / own.time) : ""] : [curve.name, lost, "", "", ""])
       .forEach((text) => element("td", String(text), row));
   }
+};
+/* Motions from drives: errors of positions, velocities and accelerations, with a colour for each source of sines. */
+const KERNELS = [["own", "the runtime's own"], ["fma", "feature fma: fused products"], ["libm", "feature libm"]];
+const kinematics = () => {
+  const own = DATA.curves.filter((curve) => curve.kernel !== undefined);
+  byId("kinematics-panel").hidden = own.length === 0;
+  if (own.length === 0) return;
+  const quantity = byId("kinematic-error");
+  const isSingle = byId("kinematic-numbers").value === "f32";
+  const over = byId("kinematic-over");
+  const words = over.value === "time" ? `time (${DATA.unit})` : "steps over the span";
+  chart("kinematics", (point) => point[over.value], words, {
+    error: (point) => point[quantity.value],
+    words: quantity.selectedOptions[0].textContent,
+    colour: (curve) => KERNELS.findIndex(([kernel]) => kernel === curve.kernel),
+    shows: (curve) => curve.kernel !== undefined && curve.dashed === isSingle,
+  });
+  const legend = byId("kernel-legend");
+  legend.replaceChildren();
+  const known = KERNELS.filter(([kernel]) => own.some((curve) => curve.kernel === kernel));
+  known.forEach(([kernel, name]) => {
+    const entry = element("span", undefined, legend);
+    const sample = svgElement("svg", { viewBox: "0 0 40 14" }, entry);
+    const colour = COLOURS[KERNELS.findIndex(([other]) => other === kernel)];
+    svgElement("path", { d: "M1 7H39", stroke: colour, "stroke-width": 2, ...dashes({ kernel, dashed: isSingle }) }, sample);
+    element("span", name, entry);
+  });
+  /* Times over those with the runtime's own sines, at the same settings: the median. */
+  const times = new Map();
+  const add = (curve, point) => {
+    const key = `${base(curve)}\u0000${point.label}`;
+    times.set(key, { ...times.get(key), [curve.kernel]: point.time });
+  };
+  own.filter((curve) => curve.dashed === isSingle).forEach((curve) => curve.points.filter((point) => point.time > 0).forEach((point) => add(curve, point)));
+  const ratio = (kernel) => {
+    const ratios = [...times.values()].filter((of) => of.own && of[kernel]).map((of) => of[kernel] / of.own).sort((a, b) => a - b);
+    return ratios[Math.floor(ratios.length / 2)];
+  };
+  const told = known.slice(1).map(([kernel]) => [kernel, ratio(kernel)]).filter(([, median]) => median !== undefined);
+  byId("kernel-words").textContent = known.length === 1
+    ? "`mbs cost --kernels` adds the sines of the features `fma` and `libm`."
+    : told.map(([kernel, median]) => `A step with the feature ${kernel} takes ${short(median)} times as long as with the runtime's own sines (median of all settings).`).join(" ");
 };
 /* Errors of splines along tables of a function over the number of points, for one rounding and one derivative. */
 const splines = () => {
@@ -303,6 +363,7 @@ const draw = () => {
   legend();
   table();
   peers();
+  kinematics();
   splines();
   choose(cheapest(asked));
 };
@@ -321,6 +382,7 @@ byId("front").addEventListener("click", () => { showFront(); draw(); });
 byId("all").addEventListener("click", () => { DATA.curves.forEach((_, c) => shown.add(c)); draw(); });
 byId("none").addEventListener("click", () => { shown.clear(); draw(); });
 byId("count").addEventListener("change", draw);
+for (const name of ["kinematic-error", "kinematic-numbers", "kinematic-over"]) byId(name).addEventListener("change", kinematics);
 addEventListener("resize", draw);
 refused();
 draw();

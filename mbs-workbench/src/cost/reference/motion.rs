@@ -23,6 +23,18 @@ pub enum Leg {
     Order5,
 }
 
+impl Leg {
+    /// Its kind in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Leg::Extrapolated => "extrapolated",
+            Leg::Collocated => "collocated",
+            Leg::Order8 => "explicit (order 8)",
+            Leg::Order5 => "explicit (order 5)",
+        }
+    }
+}
+
 /// The state at an instant with what settings are compared in.
 #[derive(Clone, Debug)]
 pub struct Shot {
@@ -36,14 +48,24 @@ pub struct Shot {
     pub observed: Observed<D>,
 }
 
-/// A contact that closes or opens.
+/// The shot of a motion with these numbers alone.
+#[cfg(test)]
+pub fn shot_of(t: f64, q: Vec<f64>, qd: Vec<f64>, qdd: Vec<f64>) -> Shot {
+    let exact = |values: Vec<f64>| values.into_iter().map(D::constant).collect::<Vec<D>>();
+    let zero = D::constant(0.0);
+    let observed = Observed { reaction: Vec::new(), energy: zero, kinetic: zero, outputs: Vec::new() };
+    let at = Moving { t: D::constant(t), q: exact(q), qd: exact(qd), states: Vec::new() };
+    Shot { at, qdd: exact(qdd), lambda: Vec::new(), observed }
+}
+
+/// A contact that closes or opens, or an event of the text that begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Time (s).
     pub t: f64,
-    /// Its index among the contacts of the text.
+    /// Its index among the contacts of the text, events behind them.
     pub index: usize,
-    /// `true` where it closes.
+    /// `true` where a contact closes.
     pub closes: bool,
     /// `true` where velocities jump: a rigid contact.
     pub jumps: bool,
@@ -58,7 +80,7 @@ pub struct Reference {
     pub tolerance: f64,
     /// Steps taken.
     pub steps: u64,
-    /// Contacts that closed or opened, in the order of time.
+    /// Contacts that closed or opened, and events that began or ended, in the order of time.
     pub contacts: Vec<Contact>,
     /// Reason why it ended early.
     pub stuck: Option<Stuck>,
@@ -245,14 +267,19 @@ pub fn reference(
     tolerance: f64,
     budget: Duration,
 ) -> Reference {
-    let mut method: Box<dyn StepMethod> = match leg {
-        Leg::Collocated => Box::new(Collocated::default()),
-        _ => Box::new(Extrapolated),
-    };
     let exact = |values: &[f64]| values.iter().map(|value| D::constant(*value)).collect::<Vec<D>>();
     let first = times.first().copied().unwrap_or(0.0);
     let span = times.last().copied().unwrap_or(0.0) - first;
     let mut found = Reference { shots: Vec::new(), tolerance, steps: 0, contacts: Vec::new(), stuck: None };
+    let mut method: Box<dyn StepMethod> = match leg {
+        Leg::Extrapolated => Box::new(Extrapolated),
+        Leg::Collocated => Box::new(Collocated::default()),
+        // Their steps are those of the runtime: `of_one_kind`.
+        Leg::Order8 | Leg::Order5 => {
+            found.stuck = Some(Stuck::Refused(format!("{} steps are the runtime's", leg.name())));
+            return found;
+        }
+    };
     let Some(mut course) = Course::begin(equations, exact(start.0), exact(start.1), first) else {
         found.stuck = Some(Stuck::SmallSteps);
         return found;

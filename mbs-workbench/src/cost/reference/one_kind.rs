@@ -16,7 +16,10 @@ const TOLERANCES: [f64; 4] = [1e-9, 1e-11, 1e-13, 1e-15];
 
 /// Order by which the time of a run grows with its tolerance, at least.
 fn order(leg: Leg) -> f64 {
-    if leg == Leg::Order5 { 5.0 } else { 8.0 }
+    match leg {
+        Leg::Order5 => 5.0,
+        Leg::Order8 | Leg::Extrapolated | Leg::Collocated => 8.0,
+    }
 }
 
 /// Formulations beside projection, the preferred one first.
@@ -28,7 +31,9 @@ pub fn method(of: &OneKind, leg: Leg) -> MotionMethod {
     let other = OTHERS.into_iter().map(by).find(|method| of.runs.admits(*method));
     match leg {
         Leg::Order5 => other.unwrap_or(by(FormulationName::Projection)),
-        _ => MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8),
+        Leg::Order8 | Leg::Extrapolated | Leg::Collocated => {
+            MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8)
+        }
     }
 }
 
@@ -72,10 +77,12 @@ fn run(of: &OneKind, leg: Leg, times: &[f64], tolerance: f64) -> Reference {
     let contacts = ran.and_then(|effort| Ok((effort, of.runs.contacts(method, resolution, times)?)));
     match contacts {
         Ok((effort, found)) => {
-            let closings = found.iter().enumerate().flat_map(|(index, times)| {
-                times.iter().map(move |t| Contact { t: *t, index, closes: true, jumps: of.soft <= index })
+            let [soft, rigid] = of.contacts;
+            let changes = found.iter().enumerate().flat_map(|(index, times)| {
+                let (closes, jumps) = (index < soft + rigid, (soft..soft + rigid).contains(&index));
+                times.iter().map(move |t| Contact { t: *t, index, closes, jumps })
             });
-            let mut contacts: Vec<Contact> = closings.collect();
+            let mut contacts: Vec<Contact> = changes.collect();
             contacts.sort_by(|a, b| a.t.total_cmp(&b.t));
             Reference { shots, tolerance, steps: effort.steps, contacts, stuck: None }
         }

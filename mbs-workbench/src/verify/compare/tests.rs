@@ -38,6 +38,7 @@ impl AnyEquations for Hand {
         const {
             &Description {
                 type_name: "Hand",
+                told: core::any::type_name::<Self>,
                 scene: "AllEffects",
                 source: "",
                 coordinates: &[entry("theta", "rad"), entry("x", "m")],

@@ -1,9 +1,10 @@
 //! Motion laws and splines.
 
 use mbs_runtime::driver::{
-    CubicSpline, End, FitError, Law, LawError, PeriodicQuintic, Rise, Segment, Segments, Trapezoidal,
+    CubicSpline, End, FitError, Foot, FootError, Law, LawError, PeriodicQuintic, ReachError, Rise, Segment,
+    Segments, Trapezoidal, nearest_foot, reach,
 };
-use mbs_runtime::{Function, Scalar};
+use mbs_runtime::{Function, Interval, Real, Scalar};
 
 entry_points! {
     /// Value and derivatives of a driver.
@@ -13,6 +14,18 @@ entry_points! {
     /// Next breakpoint of a driver.
     fn breakpoint_after[F: Function<T>, T: Scalar](function: &F, x: f64) -> Option<f64> {
         function.breakpoint_after(x)
+    }
+    /// Bounds of value and derivatives of a driver.
+    fn enclosure[F: Function<T>, T: Scalar, const K: usize](function: &F, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
+        function.enclosure(from, to)
+    }
+    /// Reach of a polar curve.
+    fn curve_reach[R: Real, F: Function<R>](radius: &F) -> Result<[R; 2], ReachError> {
+        reach(radius)
+    }
+    /// Nearest point of a polar curve.
+    fn foot[R: Real, F: Function<R>](radius: &F, point: [R; 2]) -> Result<Foot<R>, FootError<R>> {
+        nearest_foot(radius, point)
     }
     /// A motion law between dwells.
     fn rise[L: Law](start: f64, duration: f64, from: f64, to: f64) -> Result<Rise<L>, LawError> {
