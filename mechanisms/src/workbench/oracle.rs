@@ -96,9 +96,9 @@ fn interpreted_texts_agree_with_emitted_code() {
             Err(gap) => gaps.push(format!("{}: {gap}", card.name())),
         }
     }
-    // Functions of the caller are in no text. Modes of rigid contacts and values of events are in no state.
+    // Functions of the caller are in no text. Modes of rigid contacts and of frictions that stick are in no state.
     let is_known = |gap: &String| {
-        ["the caller's function", "contact with a restitution", "event"]
+        ["the caller's function", "contact with a restitution", "friction that sticks"]
             .iter()
             .any(|known| gap.contains(known))
     };

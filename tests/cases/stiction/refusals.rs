@@ -18,7 +18,7 @@ mechanism! {
 fn refused<X>(found: Result<X, Failure>) {
     let failure = found.err().expect("it is refused");
     assert!(matches!(failure.kind, FailureKind::SetValuedForce { row } if row.name == "rub"), "{failure}");
-    assert!(failure.to_string().contains("take an explicit method"), "{failure}");
+    assert!(failure.to_string().contains("by an explicit method"), "{failure}");
 }
 
 fn starts<X: Method<Block<f64>, f64, 1, 0>>(method: X) {
