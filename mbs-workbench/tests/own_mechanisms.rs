@@ -122,7 +122,7 @@ fn functions_of_a_file_are_checked_before_anything_is_built() {
     };
     let of = |name: &str, form: &str| format!("{name}={form}");
     let both = [of("lift[0]", law), of("lift[1]", law)];
-    let cases: [(Vec<String>, i32, &str); 15] = [
+    let cases: [(Vec<String>, i32, &str); 16] = [
         (vec![], 2, "--function lift[0]=FILE.csv --function lift[1]=FILE.csv --function push=FILE.csv"),
         (both.to_vec(), 2, "\n  push: N over m, 3 continuous derivatives\n"),
         (vec![of("lft[0]", law)], 2, "did you mean `lift[0]`?\nknown: lift[0], lift[1], push"),
@@ -159,6 +159,11 @@ fn functions_of_a_file_are_checked_before_anything_is_built() {
             [&both[..], &[of("push", &format!("{plain}:mm,s"))]].concat(),
             1,
             "the columns are s over mm, and the text declares N over m",
+        ),
+        (
+            [&both[..], &[of("push", &plain)]].concat(),
+            1,
+            "plain.csv:mm,N\"`, or write a header `x (mm), push (N)`",
         ),
         ([&both[..], &[of("push", &format!("{plain}:mm,Newtons"))]].concat(), 2, "`Newtons`"),
         ([&both[..], &[of("push", &format!("{plain}:mm,N"))]].concat(), 2, "declare `C2`, or a period"),

@@ -16,7 +16,7 @@ use super::CommandError;
 use super::law_options::{self, is_law, usage};
 use crate::cams::lift::Lift;
 use crate::mismatch::nearest;
-use crate::tables::{Columns, Spline, SplineKind, close_period, read};
+use crate::tables::{Columns, Spline, SplineKind, UNITS_UNKNOWN, close_period, read};
 use crate::text_file::TextFile;
 
 /// The option, as messages name it.
@@ -226,7 +226,20 @@ fn table(declared: &DeclaredFunction, form: &str) -> Result<Form, CommandError> 
         };
         usage(format!("`{OPTION} {name}=…`: {path} cannot be read: {error}\nhelp: {help}"))
     })?;
-    let mut points = read(&bytes, columns.as_ref()).map_err(|fault| of_file(fault.to_string()))?;
+    let mut points = read(&bytes, columns.as_ref()).map_err(|mut fault| {
+        if fault.message == UNITS_UNKNOWN {
+            let [across, up] = [argument_unit, unit].map(|unit| match unit.as_str() {
+                "rad" => "deg",
+                "m" => "mm",
+                other => other,
+            });
+            fault.cure = format!(
+                "say them behind the file, as `{OPTION} \"{name}={path}:{across},{up}\"`, or write a header \
+                 `x ({across}), {name} ({up})`"
+            );
+        }
+        of_file(fault.to_string())
+    })?;
     let (across, up) = (&points.columns.x.1, &points.columns.y.1);
     if !(is_unit(&across.coherent, argument_unit) && is_unit(&up.coherent, unit)) {
         return Err(of_file(format!(

@@ -15,6 +15,7 @@ mod table;
 mod unit;
 pub mod valley;
 
+pub(crate) use reader::UNITS_UNKNOWN;
 pub use reader::{Columns, Points, ReadFault, read, read_unordered};
 pub use spline::{SEED, Spline, SplineKind, close_period};
 pub use table::{Table, TableError, explained};

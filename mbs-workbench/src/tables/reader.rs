@@ -121,6 +121,9 @@ pub struct Points {
     pub lines: Vec<usize>,
 }
 
+/// Message where neither the header nor the caller tells the units.
+pub(crate) const UNITS_UNKNOWN: &str = "the units of the columns are not known";
+
 /// Reads a file; `columns` where the header has no units.
 ///
 /// Cells are separated by the first of semicolon, tab and comma, in this order, that the first line has. Unless it is the comma,
@@ -138,7 +141,7 @@ fn read_points(bytes: &[u8], columns: Option<&Columns>, is_ordered: bool) -> Res
             ReadFault::new(
                 head.line,
                 0,
-                "the units of the columns are not known".to_string(),
+                UNITS_UNKNOWN.to_string(),
                 "say `--columns \"deg, mm\"`, or write a header `cam (deg), lift (mm)`",
             )
         })?;
