@@ -97,6 +97,7 @@ const CODE_GENERATOR: &[&[&str]] = &[
     &["-p", "mbs-codegen", "--test", "scenes"],
     &["-p", "mbs-codegen", "--lib"],
     &["-p", "mbs-codegen", "--test", "repeated_rows"],
+    &["-p", "mbs-tests", "--test", "scales"],
     &["-p", "mbs-tests", "--test", "random_texts"],
 ];
 

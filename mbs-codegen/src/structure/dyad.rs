@@ -268,6 +268,20 @@ mod tests {
     use crate::model::scenes::Scenes;
     use crate::{equations, structure, syntax};
 
+    #[test]
+    fn a_similarity_turns_or_mirrors_and_scales_at_any_size() {
+        let times = |factor: f64, matrix: [[f64; 2]; 2]| matrix.map(|row| row.map(|entry| factor * entry));
+        for factor in [1.0, -1e-9, 1e9] {
+            for matrix in [[[3.0, -4.0], [4.0, 3.0]], [[3.0, 4.0], [4.0, -3.0]], [[0.0, 5.0], [-5.0, 0.0]]] {
+                assert!(is_similarity(times(factor, matrix)), "{factor} {matrix:?}");
+            }
+            // Columns of two lengths, columns that are not perpendicular, nothing at all.
+            for matrix in [[[3.0, -4.0], [4.0, 2.0]], [[3.0, 4.0], [4.0, 3.0]], [[0.0; 2]; 2]] {
+                assert!(!is_similarity(times(factor, matrix)), "{factor} {matrix:?}");
+            }
+        }
+    }
+
     /// Names of the blocks' dyads; `-` for a block of Newton's method that is none.
     fn dyads(statements: &str) -> String {
         let text =
