@@ -144,6 +144,18 @@ mod tests {
     }
 
     #[test]
+    fn a_block_solved_once_is_regular_as_its_margin_says() {
+        for bound in [1e-6_f64, 1.0, 1e6] {
+            let regular = |margin: f64| reciprocal_if_regular(4.0, margin * bound, bound * bound);
+            for (margin, expected) in
+                [(1e-7, true), (1.0, true), (1e-9, false), (0.0, false), (f64::NAN, false)]
+            {
+                assert_eq!(regular(margin), (0.25, expected), "{margin} {bound}");
+            }
+        }
+    }
+
+    #[test]
     fn every_factorization_solves_with_its_transpose() {
         let mut sequence = Sequence::new(11);
         transposed_is_solved::<Direct1<f64>, 1>(&mut sequence);
