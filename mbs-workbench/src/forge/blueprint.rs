@@ -46,7 +46,7 @@ pub struct Study {
     program: &'static str,
     /// `true` where the program takes the functions of the caller.
     with_laws: bool,
-    /// Where functions of the caller that exist in `f64` alone are taken in all numbers: the place that the type's name is taken from.
+    /// Place that the type's name is taken from, where functions of the caller in `f64` alone are taken in all numbers.
     in_doubles: Option<NameFrom>,
 }
 
