@@ -9,18 +9,11 @@ use crate::driver::{
     fit_periodic_quintic,
 };
 use crate::mechanism::function::Function;
+use crate::scalar::sequence::Sequence;
 
-/// Numbers of a fixed seed between 0 and 1: SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
+/// The next number between 0 and 1.
+fn share(random: &mut Sequence) -> f64 {
+    0.5 + 0.5 * random.number()
 }
 
 /// R = 30 mm + h s(w): a bump of a width between two of 360 angles, or anywhere.
@@ -109,12 +102,12 @@ fn a_bump_between_two_samples_has_the_nearest_foot() {
 fn encloses<const K: usize>(
     name: &str,
     function: &impl Function<f64>,
-    random: &mut Random,
+    random: &mut Sequence,
     [from, to]: [f64; 2],
 ) {
     for _ in 0..200 {
-        let width = (to - from) * 10.0_f64.powf(-7.0 * random.next());
-        let low = from + (to - from) * random.next() - 0.5 * width;
+        let width = (to - from) * 10.0_f64.powf(-7.0 * share(random));
+        let low = from + (to - from) * share(random) - 0.5 * width;
         let bounds = function.enclosure::<K>(low, low + width).expect("bounds");
         let mut widest = [0.0_f64; K];
         for k in 0..=40 {
@@ -139,12 +132,12 @@ fn encloses<const K: usize>(
 
 #[test]
 fn values_of_all_drivers_are_within_their_enclosures() {
-    let random = &mut Random(1);
+    let random = &mut Sequence::new(1);
     let harmonic = Harmonic { offset: 1.0, amplitude: 2.0, frequency: 3.0, phase: 4.0 };
     encloses::<5>("harmonic", &harmonic, random, [-10.0, 10.0]);
     let polynomial = Polynomial { coefficients: [0.3, -0.2, 0.5, 0.1, -0.02, 0.004] };
     encloses::<7>("polynomial", &polynomial, random, [-3.0, 3.0]);
-    fn laws<L: Law, const K: usize>(name: &str, random: &mut Random) {
+    fn laws<L: Law, const K: usize>(name: &str, random: &mut Sequence) {
         let rise: Rise<L> = Rise::new(0.3, 2.0, 0.1, 0.9).expect("a law");
         encloses::<K>(name, &rise, random, [-1.0, 3.0]);
         let parts = [Segment::to(0.8, 2.0), Segment::dwell(PI), Segment::to(0.0, 5.0), Segment::dwell(TAU)];
@@ -157,14 +150,14 @@ fn values_of_all_drivers_are_within_their_enclosures() {
     let slide = Trapezoidal::new(3.0, 1.0, 2.0).expect("a law");
     encloses::<2>("trapezoidal", &slide, random, [-1.0, 5.0]);
     // Unevenly spaced knots, ends that go on.
-    let x: [f64; 9] = from_fn(|k| k as f64 * 0.5 + 0.2 * random.next());
+    let x: [f64; 9] = from_fn(|k| k as f64 * 0.5 + 0.2 * share(random));
     let y = x.map(|x| (1.3 * x).sin());
     let spline = CubicSpline::clamped(&x, &y, [0.4, -0.3]).expect("a spline");
     encloses::<3>("cubic spline", &spline, random, [-1.0, 6.0]);
     let (mut rows, mut pieces) = ([CubicRow::EMPTY; 9], [[0.0; 4]; 9]);
     fit_cubic(&x, [End::Natural; 2], &x, &y, &mut rows, &mut pieces).expect("a spline");
     encloses::<3>("open table", &Table::open(&x, &pieces), random, [-1.0, 6.0]);
-    let x: [f64; 24] = from_fn(|k| 1.0 + (k as f64 + 0.5 * random.next()) * TAU / 24.0);
+    let x: [f64; 24] = from_fn(|k| 1.0 + (k as f64 + 0.5 * share(random)) * TAU / 24.0);
     let y = x.map(|x| x.sin() + 0.1 * (3.0 * x).cos());
     let quintic = PeriodicQuintic::interpolate(&x, TAU, &y).expect("a spline");
     encloses::<5>("periodic quintic", &quintic, random, [-30.0, 30.0]);

@@ -5,18 +5,7 @@ use core::f64::consts::TAU;
 use mbs_runtime::driver::{Harmonic, Polynomial4567, Segment, Segments, nearest_foot, reach};
 use mbs_runtime::{Function, Interval, Scalar};
 
-/// Numbers of a fixed seed between 0 and 1: SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
+use crate::linkages::follow::Random;
 
 /// Σ of waves with a bump: a function of the caller.
 #[derive(Clone)]
@@ -29,14 +18,14 @@ impl Unseen {
     fn any(random: &mut Random) -> Self {
         let wave = |k: usize, random: &mut Random| Harmonic {
             offset: 0.0,
-            amplitude: 0.004 * random.next() / k as f64,
+            amplitude: 0.004 * random.between(0.0, 1.0) / k as f64,
             frequency: k as f64,
-            phase: TAU * random.next(),
+            phase: TAU * random.between(0.0, 1.0),
         };
         let waves = (1..8).map(|k| wave(k, random)).collect();
-        let width = 10.0_f64.powf(-3.0 + 2.5 * random.next());
-        let height = (random.next() - 0.3) * 0.2 * width;
-        let at = TAU * random.next();
+        let width = 10.0_f64.powf(-3.0 + 2.5 * random.between(0.0, 1.0));
+        let height = (random.between(0.0, 1.0) - 0.3) * 0.2 * width;
+        let at = TAU * random.between(0.0, 1.0);
         let parts = [
             Segment::to(0.03 + height, at + 0.5 * width),
             Segment::to(0.03, at + width),
@@ -87,7 +76,7 @@ fn unseen_curves_have_the_feet_that_a_search_of_a_million_places_finds() {
         let places = places(&curve);
         let [inside, outside] = reach::<f64, _>(&curve).expect("bounds");
         for _ in 0..8 {
-            let (far, towards) = (0.07 * random.next(), TAU * random.next());
+            let (far, towards) = (0.07 * random.between(0.0, 1.0), TAU * random.between(0.0, 1.0));
             let point = [far * towards.cos(), far * towards.sin()];
             let off = |k: usize| (places[k][0] - point[0]).hypot(places[k][1] - point[1]);
             let least = (0..places.len()).map(off).fold(f64::INFINITY, f64::min);
