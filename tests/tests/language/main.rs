@@ -5,7 +5,11 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+#[path = "../jet/mod.rs"]
 mod jet;
+
+mod numbers;
+mod values;
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,7 +17,7 @@ use jet::{Jet, check, close, state};
 use mbs_runtime::{Kinematic, Lanes, Mechanism, Scalar, Signal, Stepper, mechanism};
 
 /// This file, to find the lines that the tables name.
-const FILE: &str = include_str!("language.rs");
+const FILE: &str = include_str!("main.rs");
 
 mechanism! {
     /// One row an operator or a function of one argument.
@@ -71,67 +75,6 @@ mechanism! {
     }
 }
 
-/// The rows of a text whose `y` have these values.
-fn rows(values: [Jet; 16], q: &[Jet; 18], t: Jet) -> (Vec<Jet>, Vec<Jet>) {
-    let mut rows = vec![q[0] - (0.3 + 0.2 * t.sin()), q[1] - (0.7 - 0.1 * t)];
-    rows.extend(values.iter().zip(&q[2..]).map(|(value, y)| *y - *value));
-    (rows, Vec::new())
-}
-
-fn operators(q: &[Jet; 18], t: Jet) -> (Vec<Jet>, Vec<Jet>) {
-    let ([x, z], one) = ([q[0], q[1]], Jet::number(1.0));
-    let values = [
-        x + z,
-        x - z,
-        x * z,
-        x / z,
-        -x,
-        (2.0 + x).pow(z),
-        x * x * x,
-        one / (x * x),
-        (1.0 + x).sqrt(),
-        one / ((1.0 + x) * (1.0 + x).sqrt()),
-        (1.0 + x * z).sqrt(),
-        (-x * z).exp(),
-        (1.0 + x * z).ln(),
-        (x * z).sin(),
-        (x + z).cos(),
-        (x * z).sin() / (x * z).cos(),
-    ];
-    rows(values, q, t)
-}
-
-fn functions(q: &[Jet; 18], t: Jet) -> (Vec<Jet>, Vec<Jet>) {
-    let [x, z] = [q[0], q[1]];
-    let values = [
-        (x * z).asin(),
-        PI / 2.0 - (x * z).asin(),
-        (x - 3.0 * z).atan(),
-        (x / z).atan(),
-        0.5 * ((x * z).exp() - (-x * z).exp()),
-        0.5 * ((x * z).exp() + (-x * z).exp()),
-        ((x * z).exp() - (-x * z).exp()) / ((x * z).exp() + (-x * z).exp()),
-        z - x,
-        -x,
-        x * z,
-        z,
-        (x * x + z * z + x * z * x * z).sqrt(),
-        1.0 + 2.0 * x + 3.0 * x * x,
-        0.5 + x - 0.5 * z,
-        x * x.sin() * x.cos() / (2.0 + x.sin() * z.cos()),
-        z.pow(x) * t,
-    ];
-    rows(values, q, t)
-}
-
-#[test]
-fn every_function_and_operator_has_its_value_and_derivatives() {
-    for state in [state([0.3, 0.7], 0.4), state([0.11, 0.95], -0.2)] {
-        check(&Operators::default(), &state, operators);
-        check(&Functions::default(), &state, functions);
-    }
-}
-
 mechanism! {
     /// Planar vectors: a point on a bar on a slide.
     mechanism Plane;
@@ -152,37 +95,6 @@ mechanism! {
     out acceleration: [m/s^2; 2] = der2(tip);
 }
 
-fn plane(q: &[Jet; 5], t: Jet) -> (Vec<Jet>, Vec<Jet>) {
-    let (l, c) = ([0.3, 0.2], [0.1, -0.05]);
-    let [p0, p1, r0, r1, phi] = *q;
-    let (s, k) = (phi.sin(), phi.cos());
-    let tip = [p0 + k * c[0] - s * c[1], p1 + s * c[0] + k * c[1]];
-    let (dx, dy) = (p0 - c[0], p1 - c[1]);
-    let rows = vec![
-        r0 - (tip[0] + l[0] * k - 2.0 * l[1]),
-        r1 - (tip[1] + l[0] * s),
-        // A suffix belongs to its number: (0.1 m)².
-        dx * dx + dy * dy - 0.01,
-        p0 * s - p1 * k - 0.05,
-        phi - (0.3 + 0.5 * t),
-    ];
-    let area = p0 * r1 - p1 * r0;
-    let distance = ((r0 - p0) * (r0 - p0) + (r1 - p1) * (r1 - p1)).sqrt();
-    let rates = [tip[0].rate(), tip[1].rate(), tip[0].rate().rate(), tip[1].rate().rate()];
-    let mut outputs = vec![distance, area, area];
-    outputs.extend(rates);
-    (rows, outputs)
-}
-
-#[test]
-fn planar_vectors_are_computed_by_components() {
-    check(&Plane::default(), &state([0.4, 0.2, 0.5, -0.1, 0.8], 0.7), plane);
-    let outputs = Plane::<f64>::OUTPUTS.iter().map(|entry| (entry.name, entry.unit)).collect::<Vec<_>>();
-    assert_eq!(outputs[0], ("distance", "m"));
-    assert_eq!(outputs[2], ("area.1", "m^2"));
-    assert_eq!(outputs[3], ("speed.0", "m/s"));
-}
-
 mechanism! {
     /// Vectors of three components, matrices, arrays of parameters and coordinates.
     mechanism Space;
@@ -198,30 +110,6 @@ mechanism! {
     }
     out length: 1 = norm([v[0]]) + norm(A[1]);
     out volume: 1 = det(A) + det([v, w, b]);
-}
-
-fn space(q: &[Jet; 6], t: Jet) -> (Vec<Jet>, Vec<Jet>) {
-    let a = [[1.0, 2.0, 0.5], [-1.0, 0.3, 0.0], [0.2, 0.0, 2.0]].map(|row| row.map(Jet::number));
-    let b = [0.5, -1.0, 2.0].map(Jet::number);
-    let (v, w) = ([q[0], q[1], q[2]], [q[3], q[4], q[5]]);
-    let dot = |a: [Jet; 3], b: [Jet; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let cross = |a: [Jet; 3], b: [Jet; 3]| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    };
-    let turned = cross(v, b);
-    let mut rows: Vec<Jet> =
-        (0..3).map(|i| w[i] - (dot(a[i], v) + turned[i] - 2.0 / 3.0 * v[i] + v[i] * b[2])).collect();
-    rows.push(dot(v, b) - 0.1 * t);
-    rows.push(dot(v, v).sqrt() - 2.0);
-    rows.push(dot(v, cross(b, [a[0][1], a[1][1], a[2][1]])) - v[0]);
-    let length = v[0] + dot(a[1], a[1]).sqrt();
-    let volume = dot(a[0], cross(a[1], a[2])) + dot(v, cross(w, b));
-    (rows, vec![length, volume])
-}
-
-#[test]
-fn spatial_vectors_and_matrices_are_computed_by_components() {
-    check(&Space::default(), &state([1.1, 0.4, -0.3, 0.2, 0.9, -1.4], 0.3), space);
 }
 
 mechanism! {
@@ -243,33 +131,6 @@ mechanism! {
     out reach: m = sum(i in 0..N: L[i]*cos(phi[i])) - sum(i in LAST..2: p[i]);
 }
 
-fn chain(q: &[Jet; 9], t: Jet) -> (Vec<Jet>, Vec<Jet>) {
-    let l = [0.3, 0.2, 0.1];
-    let (phi, p) = ([q[0], q[1], q[2]], |i: usize| [q[3 + 2 * i], q[4 + 2 * i]]);
-    let bar = |i: usize| {
-        let end = [l[i] * phi[i].cos(), l[i] * phi[i].sin()];
-        let begin = if i == 0 { [Jet::number(0.0); 2] } else { p(i - 1) };
-        [p(i)[0] - begin[0] - end[0], p(i)[1] - begin[1] - end[1]]
-    };
-    let turn = |i: usize| phi[i] - phi[i - 1] - (0.1 + i as f64) * t;
-    let [[a, b], [c, d], [e, f]] = [bar(0), bar(1), bar(2)];
-    let rows = vec![a, b, c, d, turn(1), e, f, turn(2), p(2)[0] - 0.45 - 0.01 * t.sin()];
-    let reach = l[0] * phi[0].cos() + l[1] * phi[1].cos() + l[2] * phi[2].cos();
-    (rows, vec![p(1)[1], p(2)[1], reach])
-}
-
-#[test]
-fn loops_repeat_rows_outputs_and_terms() {
-    check(&Chain::default(), &state([0.2, 0.5, -0.3, 0.3, 0.1, 0.4, 0.2, 0.5, 0.3], 0.9), chain);
-    let rows: Vec<&str> = Chain::<f64>::ROWS.iter().map(|row| row.name).collect();
-    let expected = ["first.0", "first.1", "bar.0", "bar.1", "turn.0", "bar.2", "bar.3", "turn.1", "tip"];
-    assert_eq!(rows, expected);
-    let coordinates: Vec<&str> = Chain::<f64>::COORDINATES.iter().map(|c| c.name).collect();
-    assert_eq!(coordinates[..5], ["phi.0", "phi.1", "phi.2", "p.0.0", "p.0.1"]);
-    let outputs: Vec<&str> = Chain::<f64>::OUTPUTS.iter().map(|output| output.name).collect();
-    assert_eq!(outputs, ["height.0", "height.1", "reach"]);
-}
-
 mechanism! {
     /// Measured angles drive, a load does not.
     mechanism Measured;
@@ -284,33 +145,6 @@ mechanism! {
     out angle: rad = 2*u;
     out turning: rad/s = der(u);
     out work: N*m = dot(load, p);
-}
-
-/// A signal as the time moves it.
-fn moved(signal: Signal<f64>, t: Jet) -> Jet {
-    Jet::new(signal.value, signal.rate * t.rate().value(), signal.acceleration * t.rate().value().powi(2))
-}
-
-#[test]
-fn inputs_bring_their_rates_along() {
-    let signal = |value, rate, acceleration| Signal { value, rate, acceleration };
-    let (u, w) = (signal(0.4, 1.3, -0.7), [signal(0.2, -0.5, 0.3), signal(-0.1, 0.6, 2.0)]);
-    let measured = Measured { u, w, load: [3.0, -4.0] };
-    check(&measured, &state([0.3, 0.2, 0.5], 0.6), |q: &[Jet; 3], t| {
-        let [phi, p0, p1] = *q;
-        let (u, w) = (moved(u, t), w.map(|w| moved(w, t)));
-        let rows = vec![phi - (u * u.sin() + 0.1 * t), p0 - (w[0] * phi.cos() + w[1]), p1 - w[1] * phi.cos()];
-        let power = 3.0 * p0.rate() - 4.0 * p1.rate();
-        (rows, vec![power, 2.0 * u, u.rate(), 3.0 * p0 - 4.0 * p1])
-    });
-    // Outputs that use a load have no known rates; those that use a first rate have one more.
-    let position = measured.position(&measured.parameters(), &[0.0; 3], 0.0);
-    let [power, angle, turning, work] =
-        measured.outputs(&measured.parameters(), &position, &[0.0; 3], &[0.0; 3]);
-    assert_eq!((power.rate, power.acceleration), (None, None));
-    assert!(angle.rate.is_some() && angle.acceleration.is_some());
-    assert!(turning.rate.is_some() && turning.acceleration.is_none());
-    assert_eq!((work.rate, work.acceleration), (None, None));
 }
 
 mechanism! {
@@ -345,37 +179,6 @@ mechanism! {
     out cubic: m = (volume/2)^(1/3);
 }
 
-#[test]
-fn numbers_and_units_mean_what_they_say() {
-    let numbers = Numbers::<f64>::default();
-    let hertz = 100.0 * PI;
-    assert_eq!((numbers.turn, numbers.speed, numbers.mains), (PI / 6.0, hertz, hertz));
-    assert_eq!((numbers.area, numbers.volume, numbers.stress), (1e-2 * 1e-3, 2.0, 210e9));
-    assert_eq!((numbers.weight, numbers.fraction), (9806.65, 100.05));
-    let x = 1.5_f64;
-    check(&numbers, &state([x], 0.0), |q: &[Jet; 1], _| {
-        let x = q[0];
-        let number = Jet::number;
-        let outputs = vec![
-            number(9.0 / 12.0),
-            -(x * x),
-            number(2.0).pow(-x),
-            number(512.0),
-            number(-4.0),
-            x * x,
-            -x,
-            number(0.5),
-            x * x - 18.0,
-            number(3.0),
-            number(0.0),
-            number(PI + 2.0 + PI),
-            number(2.0_f64.sqrt()),
-            number(1.0),
-        ];
-        (vec![x - 1.5], outputs)
-    });
-}
-
 mechanism! {
     /// At x = z = 0 everything here has a kink.
     mechanism Kinks;
@@ -394,28 +197,6 @@ mechanism! {
     }
 }
 
-#[test]
-fn kinks_have_their_right_hand_derivative() {
-    let kinks = Kinks::<f64>::default();
-    let parameters = kinks.parameters();
-    let slopes = |x: f64, z: f64| {
-        let position = kinks.position(&parameters, &[x, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0.0);
-        let phi_q = kinks.phi_q(&parameters, &position);
-        [2, 3, 4, 5, 6].map(|row: usize| [-phi_q[row][0], -phi_q[row][1]])
-    };
-    // As for a slightly larger first argument.
-    assert_eq!(slopes(0.0, 0.0), [[1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 0.0]]);
-    assert_eq!(slopes(-0.0, -0.0), slopes(0.0, 0.0));
-    assert_eq!(slopes(-1.0, 0.0), [[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]]);
-    assert_eq!(slopes(3.0, 4.0), [[1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [3.0 / 5.0, 4.0 / 5.0]]);
-    let position = kinks.position(&parameters, &[-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0.0);
-    let values = kinks.phi(&parameters, &position).map(|residual| -residual);
-    assert_eq!(values[2..], [2.0, -1.0, -2.0, 0.0, 2.0, 0.0]);
-    // γ at the kink stays finite.
-    let gamma = kinks.gamma(&parameters, &kinks.position(&parameters, &[0.0; 8], 0.0), &[1.0; 8]);
-    assert!(gamma.iter().all(|value| value.is_finite()), "{gamma:?}");
-}
-
 mechanism! {
     /// Zero needs no unit.
     mechanism Zero;
@@ -426,19 +207,6 @@ mechanism! {
     branch ahead: p.0 > 0;
     branch behind at start: 0 > v;
     out nothing: [m; 2] = p - 0*p;
-}
-
-#[test]
-fn zero_fits_any_unit() {
-    check(&Zero::default(), &state([1.0, 2.0, 3.0], 0.0), |q: &[Jet; 3], _| {
-        (vec![q[0], q[1], -q[2]], vec![q[0], q[1]])
-    });
-    let zero = Zero::<f64>::default();
-    let position = zero.position(&zero.parameters(), &[1.0, 2.0, 3.0], 0.0);
-    assert_eq!(zero.branches(&zero.parameters(), &position), [1.0, -3.0]);
-    assert_eq!(Zero::<f64>::BRANCHES_AT_START, [false, true]);
-    let units: Vec<&str> = Zero::<f64>::BRANCHES.iter().map(|branch| branch.unit).collect();
-    assert_eq!(units, ["m", "m/s"]);
 }
 
 mechanism! {
