@@ -200,7 +200,9 @@ pub fn program(cards: &[Card]) -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             let typed = typed_command();
-            let hint = mechanism_as_command(&catalogue, &error).or_else(|| option_elsewhere(&error, &typed));
+            let hint = mechanism_as_command(&catalogue, &error)
+                .or_else(|| option_elsewhere(&error, &typed))
+                .or_else(|| value_elsewhere(&error, &typed));
             put_usage(&error, hint.as_deref());
             match hint {
                 Some(hint) => return report(&CommandError::Usage(hint)),
@@ -370,6 +372,25 @@ fn option_elsewhere(error: &clap::Error, typed: &str) -> Option<String> {
     Some(format!(
         "unexpected argument '{option}': `mbs {typed}` has no such option, {reason}\n\
          `mbs {typed} --help` lists those that it has"
+    ))
+}
+
+/// Option of the command `typed` that has the value which another one lacks.
+fn value_elsewhere(error: &clap::Error, typed: &str) -> Option<String> {
+    let is_unknown =
+        error.kind() == ErrorKind::InvalidValue && error.get(ContextKind::SuggestedValue).is_none();
+    let string = |kind: ContextKind| match error.get(kind).filter(|_| is_unknown)? {
+        ContextValue::String(text) => Some(text.as_str()),
+        _ => None,
+    };
+    let (option, word) = (string(ContextKind::InvalidArg)?, string(ContextKind::InvalidValue)?);
+    let commands = Arguments::command();
+    let command = commands.find_subcommand(typed)?;
+    let has = |known: &&clap::Arg| known.get_possible_values().iter().any(|value| value.matches(word, true));
+    let long = command.get_arguments().find(has)?.get_long()?;
+    let option = option.split(' ').next().unwrap_or(option);
+    Some(format!(
+        "`{word}` is no value of `{option}`; write `--{long} {word}`\n`mbs {typed} --help` lists the values of both"
     ))
 }
 

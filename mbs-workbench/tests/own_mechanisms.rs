@@ -290,6 +290,14 @@ fn a_file_is_checked_and_listed_without_a_build() {
         assert!(checked.contains(words), "{words} is missing in\n{checked}");
     }
     assert!(text(&["list", path]).contains("L=0.2 m (0.1 to 0.3), u=0 m"));
+    // An end that follows from the begin is told, a pulse and a level above are not.
+    write(
+        "mechanism Ball;\ncoord y: m = 1;\nbody ball { mass: 1kg, com: [0, y] }\nevent low: y < 0 until y < 0.5m;\n\
+         event up: y > 0 until y > 0.5m;\nevent late: t > 1s until t > 2s;\nforce f: 1N*(low + up + late) on y;\nstart y = 1 rate 0;\n",
+    );
+    let checked = text(&["check", path]);
+    assert!(checked.contains("warning: `low` never begins"), "{checked}");
+    assert!(checked.contains("1 text without faults, 1 warning"), "{checked}");
     write("mechanism Rod;\nparam L: m = 0.2 in 0.3..0.4;\ncoord x: m;\ndrive d: x == L;\n");
     let said = failure(&["check", path], 1);
     assert!(said.contains("the default of `L`, 0.2, is outside of its range"), "{said}");

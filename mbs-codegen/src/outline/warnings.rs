@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use proc_macro2::{Span, TokenStream, TokenTree};
 
 use crate::diagnostics::Diagnostics;
-use crate::model::expression::Node;
+use crate::model::expression::{Expressions, Id, Node};
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
 use crate::model::vanishing::values;
@@ -17,7 +17,7 @@ use crate::syntax::ast::{Name, StatementKind};
 const FAR: f64 = 0.5;
 
 /// Before: a text without faults, with the structure of its scenes. After: names that nothing uses, assemblies that no branch
-/// chooses, guesses that leave rows wide open.
+/// chooses, guesses that leave rows wide open, events that never begin.
 pub fn warnings(text: &Text, scenes: &Scenes, structures: &[(&Scene, Structure)]) -> Diagnostics {
     let mut warnings = Diagnostics::default();
     unused(text, &mut warnings);
@@ -28,6 +28,7 @@ pub fn warnings(text: &Text, scenes: &Scenes, structures: &[(&Scene, Structure)]
             let mut warnings = Diagnostics::default();
             unchosen(scene, structure, &mut warnings);
             open(scene, &mut warnings);
+            never_begun(scene, &mut warnings);
             (scene.label(), warnings)
         })
         .collect();
@@ -123,6 +124,60 @@ fn open(scene: &Scene, warnings: &mut Diagnostics) {
             report(warnings, row.span, message);
         }
     }
+}
+
+/// Events whose end holds wherever their begin does: with one side of both conditions alike, and numbers on the other.
+fn never_begun(scene: &Scene, warnings: &mut Diagnostics) {
+    let model = &scene.model;
+    let Some(dynamics) = model.dynamics.as_ref().filter(|dynamics| !dynamics.events.is_empty()) else {
+        return;
+    };
+    let variable = |node: Node| match node {
+        Node::Variable(index) => model.variables.get(index).map(|variable| variable.default),
+        _ => None,
+    };
+    let known = values(&model.expressions, variable, |_, _, _| None);
+    let kinds = kinds(&model.expressions);
+    let mut told: Vec<&str> = Vec::new();
+    for event in &dynamics.events {
+        let (Some([larger, smaller]), Some([end_larger, end_smaller])) = (event.begins, event.ends) else {
+            continue;
+        };
+        let number = |id: Id| known.get(id.index()).copied().flatten().map(|(value, _)| value);
+        let alike = |a: Id, b: Id| kinds.get(a.index()) == kinds.get(b.index());
+        // Numbers `least` and `most` with least ≤ most where the end follows from the begin.
+        let above = alike(larger, end_larger).then(|| number(end_smaller).zip(number(smaller))).flatten();
+        let below = alike(smaller, end_smaller).then(|| number(larger).zip(number(end_larger))).flatten();
+        let group = event.name.split('.').next().unwrap_or(&event.name);
+        if [above, below].into_iter().flatten().any(|(least, most)| least <= most) && !told.contains(&group) {
+            told.push(group);
+            warnings.report(
+                event.span,
+                format!("`{group}` never begins: the condition of its end holds wherever that of its begin does"),
+                "write an end that holds elsewhere, as `until y > 0.5m` behind `y < 0`; without `until` it ends where it holds no more",
+            );
+        }
+    }
+}
+
+/// A number for each expression, the same for those that are written alike.
+fn kinds(expressions: &Expressions) -> Vec<usize> {
+    let mut known: BTreeMap<String, usize> = BTreeMap::new();
+    let mut kinds: Vec<usize> = Vec::with_capacity(expressions.len());
+    for (_, node) in expressions.iter() {
+        let of = |id: Id| kinds.get(id.index()).copied().unwrap_or(usize::MAX);
+        let key = match node {
+            Node::Unary(function, a) => format!("{function:?} {}", of(a)),
+            Node::Binary(function, a, b) => format!("{function:?} {} {}", of(a), of(b)),
+            Node::Rate(a, order) => format!("rate {} {order}", of(a)),
+            Node::Call { function, order, argument } => format!("call {function} {order} {}", of(argument)),
+            Node::Ratio(a, row) => format!("ratio {} {row}", of(a)),
+            leaf => format!("{leaf:?}"),
+        };
+        let next = known.len();
+        kinds.push(*known.entry(key).or_insert(next));
+    }
+    kinds
 }
 
 fn report(warnings: &mut Diagnostics, span: Span, message: String) {

@@ -37,7 +37,7 @@ mod unit;
 pub mod unit_symbols;
 pub mod unreadable;
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 
 use crate::diagnostics::Diagnostics;
 #[cfg(test)]
@@ -72,10 +72,11 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
     if !diagnostics.is_empty() {
         return None;
     }
-    let (header, rest) = header::read(first, runtime, diagnostics)?;
+    let (mut header, rest) = header::read(first, runtime, diagnostics)?;
     if let Some(fault) = header.name_fault() {
         diagnostics.report(header.name.span(), fault, "give the mechanism another name");
-        return None;
+        // The statements may have faults too.
+        header.name = Ident::new("Mechanism", header.name.span());
     }
     let body = tokens::flatten(rest.into_iter().chain(body).collect(), diagnostics);
     let body = without_comments(body, diagnostics);

@@ -80,7 +80,7 @@ fn an_end_that_no_one_waits_for_is_refused_after_a_thousand_steps() {
 
 #[test]
 fn senseless_arguments_are_refused_in_plain_words() {
-    let cases: [(&[&str], &str); 35] = [
+    let cases: [(&[&str], &str); 37] = [
         (&["run", "four_bar", "--until", "-1"], "a number above 0"),
         (&["run", "pendulum", "--step", "-1"], "a number above 0"),
         (&["run", "pendulum", "--tolerance", "-1"], "a number above 0"),
@@ -95,6 +95,8 @@ fn senseless_arguments_are_refused_in_plain_words() {
         (&["run", "pendulum", "--param", "m=-1"], "`mass` of `bob` is negative: -1"),
         (&["run", "quarter_car", "--param", "k.0=-5"], "`stiffness` of `"),
         (&["drift", "pendulum", "--integrator", "order5"], "use `--integrator rk4` or `euler`"),
+        (&["simulate", "pendulum", "--method", "rk4"], "write `--integrator rk4`"),
+        (&["simulate", "pendulum", "--integrator", "radau"], "write `--method radau`"),
         (&["print", "four_bar", "M"], "neither masses nor forces"),
         (&["run", "four_bar", "--steps", "0"], "at least 1"),
         (&["run", "four_bar", "--steps", "many"], "whole number"),

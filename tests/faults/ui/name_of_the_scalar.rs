@@ -4,7 +4,7 @@ use mbs_runtime::mechanism;
 mechanism! {
     pub mechanism T;
     coord phi: rad = 0.1;
-    drive crank: phi == t/1s;
+    drive crank: phi == omega*t/1s;
 }
 
 fn main() {}
