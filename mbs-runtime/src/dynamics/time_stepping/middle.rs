@@ -246,6 +246,8 @@ where
             *guess = match row.restitution {
                 Some(_) if separates && !sticks(mode) => one,
                 Some(_) => zero,
+                // What has come to rest is tried at rest.
+                None if mode.direction * at(&laws.start, index) <= no_rate(row, &y.qd, model.metric) => zero,
                 None => mode.direction,
             };
         }

@@ -21,7 +21,7 @@ use crate::scalar::number::Real;
 ///
 /// - Order 1. Forces are explicit: of a spring ω h must be below 2. Texts without contacts and stiction are integrated by the same rule.
 /// - e counts as 0 where the rebound would be shorter than a step, or lower than the depth reached: so bounces end, and a body rests.
-/// - Contacts bring in no energy: one that approaches takes (1 − e²) of its part. One that separates at the start of a step and is pressed
+/// - Contacts bring in no energy: one that approaches takes ½ P (1 − e) |ġ⁻|. One that separates at the start of a step and is pressed
 ///   back within it returns at most with the speed that it had. With friction e is lowered as far as needed.
 /// - An open contact is entered by the way of a step. What closes is lifted out as far as the energy lost in the step allows; the rest of the
 ///   order of h² stays as the gap at which it rests.
