@@ -121,7 +121,7 @@ fn a_ball_passes_the_end_of_infinitely_many_bounces_and_rests() {
 fn every_restitution_ends_within_the_order_of_a_step() {
     for e in [0.0, 0.1, 0.5, 0.8] {
         for h in [1e-3, 2.5e-4] {
-            let ball: Ball<f64> = Ball { e, ..Ball::default() };
+            let ball: Ball<f64> = Ball { e };
             let mut run = Simulation::start_from_text(ball, MoreauJean, 0.0_f64).expect("it starts");
             let mut rest = f64::NAN;
             let risen = rise(&mut run, (end(e) + 60.0 * h, h), |run| {
@@ -132,7 +132,7 @@ fn every_restitution_ends_within_the_order_of_a_step() {
         }
     }
     // Without a loss it comes back to where it was let go.
-    let ball: Ball<f64> = Ball { e: 1.0, ..Ball::default() };
+    let ball: Ball<f64> = Ball { e: 1.0 };
     let mut run = Simulation::start_from_text(ball, MoreauJean, 0.0_f64).expect("it starts");
     let mut highest = 0.0_f64;
     let risen = rise(&mut run, (5.0, 1e-3), |run| {
@@ -155,7 +155,7 @@ fn single_precision_bounces_and_rests() {
 #[test]
 fn a_column_comes_to_rest_with_the_weights_above() {
     for e in [0.0, 0.6, 0.9] {
-        let column: Column<f64> = Column { e, ..Column::default() };
+        let column: Column<f64> = Column { e };
         let mut run = Simulation::start_from_text(column, MoreauJean, 0.0_f64).expect("it starts");
         let mut deepest = 0.0_f64;
         let risen = rise(&mut run, (3.0, 2e-3), |run| {

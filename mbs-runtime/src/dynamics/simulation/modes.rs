@@ -60,7 +60,7 @@ where
         let parameters = events::anew(&self.method, &model, (t, &y), (&mut counts, false))?;
         let model = Model { parameters: &parameters, ..model };
         let parameters = match self.method.steps_over_modes() {
-            true => model.released(t, &y),
+            true => model.released(t, &y)?,
             false => anew(&self.method, &model, (t, &y), &mut counts)?,
         };
         (self.parameters, self.counts) = (parameters, counts);

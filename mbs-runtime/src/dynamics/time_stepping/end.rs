@@ -36,13 +36,10 @@ pub(super) fn ended<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
             let position = model.mechanism.position(parameters, &y.q, t);
             model.mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, &acted.lambda, places)
         };
-    let (mut parameters, _) = see(&parameters, y, Places { parameters, change: Change::Begin(before) });
+    let (parameters, _) = see(&parameters, y, Places { parameters, change: Change::Begin(before) });
     settle(model, &parameters, (t, y), counts)?;
-    if acted.lost <= zero {
-        return Ok((parameters, zero));
-    }
-    let (out, is_below) = see(&parameters, y, Places { parameters, change: Change::Lift(one) });
-    if !is_below {
+    let (parameters, is_below) = see(&parameters, y, Places { parameters, change: Change::Leave });
+    if acted.lost <= zero || !is_below {
         return Ok((parameters, zero));
     }
     let energy = |y: &IntegratorState<R, N, S::States>| {
@@ -50,24 +47,22 @@ pub(super) fn ended<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
         let energy = model.mechanism.energy(model.parameters, &position, &y.qd);
         energy.kinetic + energy.potential
     };
-    let (rest, start) = (energy(y), *y);
-    let mut lifted = (out, one);
+    let (rest, mut share) = (energy(y), one);
     for _ in 0..2 {
-        let mut trial = start;
-        settle(model, &lifted.0, (t, &mut trial), counts)?;
+        let (lifted, _) = see(&parameters, y, Places { parameters, change: Change::Lift(share) });
+        let mut trial = *y;
+        settle(model, &lifted, (t, &mut trial), counts)?;
         let taken = energy(&trial) - rest;
         if taken <= acted.lost {
-            (parameters, *y) = (lifted.0, trial);
-            return Ok((parameters, taken));
-        }
-        let share = acted.lost / taken;
-        if lifted.1 < one || share < R::constant(LEAST_SHARE) {
-            break;
+            *y = trial;
+            return Ok((see(&lifted, y, Places { parameters: lifted, change: Change::Leave }).0, taken));
         }
         // What rounding adds is left.
-        let share = share * R::constant(1.0 - LEAST_SHARE);
-        let part = see(&parameters, y, Places { parameters, change: Change::Lift(share) });
-        lifted = (part.0, share);
+        let part = acted.lost / taken * R::constant(1.0 - LEAST_SHARE);
+        if share < one || part < R::constant(LEAST_SHARE) {
+            break;
+        }
+        share = part;
     }
     Ok((parameters, zero))
 }
@@ -86,6 +81,8 @@ fn settle<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 enum Change<'a, R> {
     /// What has begun to hold, by the modes before, holds where it is; a contact no higher than closed.
     Begin(&'a [SetValuedMode<R>]),
+    /// Open contacts keep how far they are below their gap of 0.
+    Leave,
     /// Contacts that hold below their gap of 0 are lifted by this share of their depth.
     Lift(R),
 }
@@ -119,11 +116,14 @@ where
                         false => zero,
                     };
                 }
+                Change::Leave if row.restitution.is_some() => {
+                    mode.place = if holds { mode.place } else { row.place.min(zero) };
+                    is_below |= holds && mode.place < zero;
+                }
                 Change::Lift(share) if holds && row.restitution.is_some() && mode.place < zero => {
                     mode.place = if share < one { mode.place * (one - share) } else { zero };
-                    is_below = true;
                 }
-                Change::Lift(_) => {}
+                Change::Leave | Change::Lift(_) => {}
             }
         }
         (parameters, is_below)

@@ -120,12 +120,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     /// Parameters in which nothing holds that has been moved away: contacts are open, and frictions stick where they are now.
-    pub(crate) fn released(&self, t: R, y: &IntegratorState<R, N, S::States>) -> S::Parameters {
-        if const { S::SET_VALUED.is_empty() } || !self.sticks() {
-            return *self.parameters;
+    ///
+    /// # Errors
+    /// [`FailureKind::Penetration`](crate::FailureKind::Penetration) of a contact that is below the gap that it had.
+    pub(crate) fn released(
+        &self,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+    ) -> Result<S::Parameters, Failure> {
+        if const { S::SET_VALUED.is_empty() } {
+            return Ok(*self.parameters);
         }
         let position = self.position(t, y);
-        let released = Released { model: self, q: &y.q, parameters: *self.parameters };
+        let released = Released { model: self, t, q: &y.q, parameters: *self.parameters };
         let none = [R::constant(0.0); M];
         self.mechanism.set_valued_rows(self.parameters, &position, &y.qd, &y.states, &none, released)
     }
@@ -409,6 +416,7 @@ where
 /// Modes without what has been moved away from where it held.
 struct Released<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
+    t: R,
     q: &'a [R; N],
     parameters: S::Parameters,
 }
@@ -418,11 +426,18 @@ where
     S: Dynamic<R, N, M>,
     R: Real,
 {
-    type Output = S::Parameters;
+    type Output = Result<S::Parameters, Failure>;
 
-    fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> S::Parameters {
-        let modes = S::set_valued_modes_mut(&mut self.parameters).iter_mut().zip(rows);
-        for (mode, row) in modes.filter(|(mode, _)| sticks(mode)) {
+    fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
+        let modes = S::set_valued_modes_mut(&mut self.parameters).iter_mut().zip(rows).enumerate();
+        for (index, (mode, row)) in modes {
+            if row.restitution.is_some() {
+                let above = SetValuedRow { place: row.place - mode.place, ..*row };
+                self.model.require_apart(self.t, self.q, (index, &above))?;
+            }
+            if !sticks(mode) {
+                continue;
+            }
             let none = set_valued::PENETRATION.of::<R>() * of_gap(row, self.q, self.model.metric);
             if (row.place - mode.place).abs() <= none {
                 continue;
@@ -432,6 +447,6 @@ where
                 None => mode.place = row.place,
             }
         }
-        self.parameters
+        Ok(self.parameters)
     }
 }
