@@ -219,9 +219,9 @@ mod tests {
 
     #[test]
     fn steps_over_impacts_converge_to_parabolas() {
-        let (until, count) = (1.6, 80);
+        let (until, count) = (0.8, 40);
         let (places, _) = flown(until, count);
-        for (parts, most) in [(20, 5e-2), (160, 5e-3)] {
+        for (parts, most) in [(20, 1.5e-2), (160, 2e-3)] {
             let run = Simulation::start_from_text(in_vacuum(), MoreauJean, 0.0_f64);
             let (mut run, mut off, mut last) = (run.expect("a start"), 0.0_f64, f64::MAX);
             for (exact, index) in places.iter().zip(1..) {
