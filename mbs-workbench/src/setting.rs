@@ -50,6 +50,8 @@ pub enum ImplicitName {
     Extrapolated,
     /// Order 2.
     GeneralizedAlpha,
+    /// Order 1, over impacts.
+    MoreauJean,
 }
 
 /// Way to move a mechanism from forces.
@@ -133,7 +135,7 @@ impl MotionMethod {
     /// All methods, the recommended ones first.
     pub fn all() -> Vec<MotionMethod> {
         use FormulationName::{Baumgarte, Penalty, Projection, Unstabilized, VelocityTransformation};
-        use ImplicitName::{AugmentedLagrangian, Extrapolated, GeneralizedAlpha};
+        use ImplicitName::{AugmentedLagrangian, Extrapolated, GeneralizedAlpha, MoreauJean};
         use IntegratorName::{DormandPrince5, DormandPrince8, Radau5, RungeKutta4, SemiImplicitEuler};
         let formulations = [Projection, VelocityTransformation, Baumgarte, Penalty, Unstabilized];
         let integrators = [DormandPrince8, DormandPrince5, Radau5, RungeKutta4, SemiImplicitEuler];
@@ -141,8 +143,8 @@ impl MotionMethod {
             .iter()
             .flat_map(|formulation| integrators.iter().map(|integrator| (*formulation, *integrator)));
         let explicit = pairs.map(|(formulation, integrator)| MotionMethod::Explicit(formulation, integrator));
-        let implicit = [AugmentedLagrangian, Extrapolated, GeneralizedAlpha].map(MotionMethod::Implicit);
-        explicit.chain(implicit).collect()
+        let whole = [AugmentedLagrangian, Extrapolated, GeneralizedAlpha, MoreauJean];
+        explicit.chain(whole.map(MotionMethod::Implicit)).collect()
     }
 
     /// `true` for steps as long as a tolerance allows.
@@ -162,12 +164,16 @@ impl MotionMethod {
             MotionMethod::Implicit(ImplicitName::AugmentedLagrangian | ImplicitName::GeneralizedAlpha) => {
                 Some(2)
             }
+            MotionMethod::Implicit(ImplicitName::MoreauJean) => Some(1),
         }
     }
 
     /// `true` for methods that solve for the end of a step: the extrapolated reference judges them.
     pub fn is_implicit(self) -> bool {
-        matches!(self, MotionMethod::Explicit(_, IntegratorName::Radau5) | MotionMethod::Implicit(_))
+        match self {
+            MotionMethod::Explicit(_, integrator) => integrator == IntegratorName::Radau5,
+            MotionMethod::Implicit(name) => name != ImplicitName::MoreauJean,
+        }
     }
 }
 
@@ -268,7 +274,7 @@ mod tests {
     #[test]
     fn every_formulation_has_every_integrator() {
         let all = MotionMethod::all();
-        assert_eq!(all.len(), 5 * 5 + 3);
+        assert_eq!(all.len(), 5 * 5 + 4);
         assert_eq!(all[0].to_string(), "Projection with DormandPrince8");
         assert_eq!(all.iter().filter(|method| method.is_adaptive()).count(), 15);
         assert!(all.iter().all(|method| method.is_adaptive() != method.order().is_some()));

@@ -75,7 +75,7 @@ mechanism! {
 
 #[cfg(test)]
 mod tests {
-    use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, RungeKutta4, Simulation};
+    use mbs_runtime::dynamics::{DormandPrince8, Explicit, MoreauJean, Projection, RungeKutta4, Simulation};
 
     use super::*;
 
@@ -215,6 +215,25 @@ mod tests {
         }
         println!("bouncing balls, {} impacts: {adaptive:.1e} m, fixed steps {fixed:.1e} m", impacts.len());
         assert!(adaptive < 1e-9 && fixed < 1e-9, "{adaptive:e} {fixed:e}");
+    }
+
+    #[test]
+    fn steps_over_impacts_converge_to_parabolas() {
+        let (until, count) = (0.8, 40);
+        let (places, _) = flown(until, count);
+        for (parts, most) in [(20, 1.5e-2), (160, 2e-3)] {
+            let run = Simulation::start_from_text(in_vacuum(), MoreauJean, 0.0_f64);
+            let (mut run, mut off, mut last) = (run.expect("a start"), 0.0_f64, f64::MAX);
+            for (exact, index) in places.iter().zip(1..) {
+                run.step_to(until * f64::from(index) / f64::from(count), parts).expect("a step");
+                off = off.max(worst(run.q(), exact));
+                let energy = run.balance().energy;
+                assert!(energy.kinetic + energy.potential < last + 1e-12, "{parts}: {:?}", run.balance());
+                last = energy.kinetic + energy.potential;
+            }
+            println!("bouncing balls, steps of {:.1e} s: {off:.1e} m", until / f64::from(count * parts));
+            assert!(off < most, "{parts}: {off:e}");
+        }
     }
 
     #[test]

@@ -100,7 +100,9 @@ mechanism! {
 
 #[cfg(test)]
 mod tests {
-    use mbs_runtime::dynamics::{Direction, DormandPrince8, Explicit, Projection, Simulation, Tolerance};
+    use mbs_runtime::dynamics::{
+        Direction, DormandPrince8, Explicit, MoreauJean, Projection, Simulation, Tolerance,
+    };
 
     use super::*;
 
@@ -140,6 +142,23 @@ mod tests {
             assert!(off[0].abs() < 3e-7 && off[1].abs() < 1e-5, "{t}: {off:?}");
         }
         assert!(run.balance().defect.abs() < 1e-10, "{:?}", run.balance());
+    }
+
+    /// Steps over impacts and jams, by the library's own time-stepping: the reference is that of another program.
+    #[test]
+    fn steps_over_strikes_converge_to_the_reference() {
+        for h in [5e-5, 1.25e-5] {
+            let run = Simulation::start_from_text(Woodpecker::default(), MoreauJean, 0.0_f64);
+            let (mut run, mut last) = (run.expect("it starts"), f64::MAX);
+            for [t, y, _] in STRIKES.into_iter().take(2) {
+                let before = run.t();
+                run.step_to(t, ((t - before) / h).round() as u32).expect("it goes on");
+                assert!((run.q()[0] - y).abs() < 12.0 * h, "{h} {t}: {:?} {y}", run.q());
+                let energy = run.balance().energy;
+                assert!(energy.kinetic + energy.potential < last, "{h} {t}: {:?}", run.balance());
+                last = energy.kinetic + energy.potential;
+            }
+        }
     }
 
     #[test]

@@ -67,6 +67,7 @@
 //! | [`AugmentedLagrangian`] | 2, implicit, fixed steps | stiff forces, redundant rows |
 //! | [`Extrapolated`] | 3, implicit, fixed steps | the same, where forces damp what the step does not show |
 //! | [`GeneralizedAlpha`] | 2, implicit, fixed steps | stiff vibrations, damped numerically |
+//! | [`MoreauJean`] | 1, fixed steps over impacts | many rigid contacts, chatter, friction that sticks |
 
 pub(crate) mod analyses;
 pub(crate) mod equilibrium;
@@ -77,6 +78,7 @@ pub(crate) mod integrators;
 pub(crate) mod linear_systems;
 pub(crate) mod model;
 pub(crate) mod simulation;
+pub(crate) mod time_stepping;
 
 pub use crate::mechanism::enclosure::WithIntervals;
 pub use crate::mechanism::event::{Condition, Event};
@@ -116,9 +118,10 @@ pub use integrators::step_control::{Adaptive, Point};
 pub use integrators::vector::{IntegratorState, Vector};
 pub use linear_systems::kkt::System;
 pub use model::instant::Instant;
-pub use model::method::Method;
+pub use model::method::{Method, SteppedInModes};
 pub use model::metric::{Metric, Tolerance};
 pub use model::{Counts, Formulation, MethodWarning, Model, Solved};
 pub use simulation::Simulation;
 pub use simulation::accuracy::{Accurate, ErrorEstimate, Estimated};
 pub use simulation::reading::Balance;
+pub use time_stepping::moreau_jean::MoreauJean;

@@ -11,7 +11,7 @@ pub struct SetValuedMode<T> {
     /// Force (N) along the length with which it sticks, or of the closed contact; 0 while equations are solved for it, and where it
     /// slides or is open.
     pub force: T,
-    /// The length (m) at which it sticks; 0 of a contact.
+    /// The length (m) at which it sticks; 0 of a contact, and below it the gap in which [`MoreauJean`](crate::dynamics::MoreauJean) has left it.
     pub place: T,
     /// Time (s) since which a contact is closed, with the time that its last, infinitely many bounces take together. Of others without meaning.
     pub since: T,

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Determinacy, Direction, Explicit, Extrapolated, Formulation,
-    GeneralizedAlpha, Method, MethodWarning, Penalty, Projection, SetValuedRow, Simulation, Tolerance,
-    Unstabilized, VelocityTransformation, WithSetValuedRows,
+    GeneralizedAlpha, Method, MethodWarning, MoreauJean, Penalty, Projection, SetValuedRow, Simulation,
+    Tolerance, Unstabilized, VelocityTransformation, WithSetValuedRows,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure, FailureKind, Partitioned, Real};
 
@@ -392,6 +392,8 @@ where
                         )
                     )
             }
+            // Without rows that come and go it is semi-implicit Euler at twice the cost.
+            MotionMethod::Implicit(ImplicitName::MoreauJean) => !S::SET_VALUED.is_empty(),
             MotionMethod::Implicit(_) => S::MISSING_SLOPE.is_none(),
         }
     }
@@ -478,6 +480,7 @@ where
                     ImplicitName::AugmentedLagrangian => &AugmentedLagrangian,
                     ImplicitName::Extrapolated => &Extrapolated,
                     ImplicitName::GeneralizedAlpha => &alpha,
+                    ImplicitName::MoreauJean => &MoreauJean,
                 };
                 let Resolution::Steps(steps) = resolution else { return Err(too_large::<N, M>()) };
                 self.fixed(method, steps, times, purpose)

@@ -30,11 +30,11 @@ fn options_that_an_analysis_has_no_use_for_are_refused() {
         (&["simulate", "pendulum", "--frequency", "3"], "belong to `--method baumgarte` or `penalty`"),
         (
             &["simulate", "pendulum", "--method", "extrapolated", "--tolerance", "1e-3"],
-            "an implicit method takes `--step`",
+            "this method takes `--step`",
         ),
         (
             &["simulate", "pendulum", "--method", "extrapolated", "--integrator", "rk4"],
-            "an implicit one takes `--step`",
+            "others take `--step`",
         ),
         (&["simulate", "pendulum", "--integrator", "rk4", "--tolerance", "1e-3"], "equal ones take `--step`"),
         (

@@ -1,6 +1,6 @@
 //! Impacts with friction of random masses, contacts and speeds: no gain of energy, and the law of each contact holds.
 
-use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation};
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, MoreauJean, Projection, Simulation};
 use mbs_runtime::{FailureKind, mechanism};
 
 mechanism! {
@@ -158,5 +158,46 @@ fn no_impact_brings_in_energy() {
         assert!(u64::from(slides) > SEEDS / 4 && u64::from(sticks) > SEEDS / 20, "{most}: {slides} {sticks}");
         // Newton's law brings in energy in some impacts with much friction.
         assert!(lowered > 0 || most < 1.0, "{most}: {lowered}");
+    }
+}
+
+/// One step over the same impacts: no gain of energy, impulses within their cones, gaps that open or stay.
+#[test]
+fn no_step_over_impacts_brings_in_energy() {
+    for most in [0.3, 1.5] {
+        let (mut refused, mut struck, mut at_limit) = (0, 0, 0);
+        for seed in 0..SEEDS {
+            let masses = seeded(seed, most);
+            let run = Simulation::start(masses, MoreauJean, 0.0_f64, [0.0; 4], masses.v);
+            let ended = run.and_then(|mut run| run.step(1e-3).map(|()| run));
+            let run = match ended {
+                Ok(run) => run,
+                Err(failure) => {
+                    let typed = matches!(failure.kind, FailureKind::ContactUndecided { .. });
+                    assert!(typed, "{seed}: {failure}");
+                    refused += 1;
+                    continue;
+                }
+            };
+            let (before, after) = (energy(&masses, &masses.v), energy(&masses, run.qd()));
+            let [p1, t1, p2, t2] = impulses(&masses, run.qd());
+            let parts = [(&masses.n1, p1), (&masses.s1, t1), (&masses.n2, p2), (&masses.s2, t2)];
+            let works: f64 = parts.iter().map(|(row, p)| (p * along(row, &masses.v)).abs()).sum();
+            assert!(after <= before + 1e-12 * (before + works), "{seed}: {before} {after} {works}");
+            struck += u64::from(after < before);
+            let size = p1.abs() + p2.abs() + t1.abs() + t2.abs();
+            for (n, (p, t), mu) in [(&masses.n1, (p1, t1), masses.mu1), (&masses.n2, (p2, t2), masses.mu2)] {
+                let place = format!("{seed}: {p} {t} of {mu}");
+                // A contact that separates before the step is open in it.
+                let open = along(n, &masses.v) > 0.0;
+                assert!(open || along(n, run.qd()) >= -1e-10, "{place}");
+                assert!(p >= -1e-8 * size && t.abs() <= mu * p + 1e-8 * size, "{place}");
+                at_limit += u64::from(p > 1e-8 * size && mu * p < t.abs() + 1e-8 * size);
+            }
+        }
+        assert!(
+            refused <= SEEDS / 30 && 2 * struck > SEEDS && 4 * at_limit > SEEDS,
+            "{refused} {struck} {at_limit}"
+        );
     }
 }

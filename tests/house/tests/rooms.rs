@@ -36,6 +36,7 @@ const HOUSES: &[House] = &[
             "dynamics/linear_systems",
             "dynamics/formulations",
             "dynamics/implicit",
+            "dynamics/time_stepping",
             "dynamics/first_order_form",
             "dynamics/equilibrium",
             "dynamics/analyses",

@@ -31,6 +31,14 @@ macro_rules! forward {
             model: &Model<'_, S, R, N, M>, from: &Instant<R, N, M, S::States>, h: R, counts: &mut Counts
         ) -> Result<Instant<R, N, M, S::States>, Failure> }
     };
+    (@steps_over_modes $($by:tt)+) => {
+        forward! { ($($by)+) steps_over_modes() -> bool }
+    };
+    (@step_in_modes $($by:tt)+) => {
+        forward! { ($($by)+) step_in_modes(
+            model: &Model<'_, S, R, N, M>, from: &Instant<R, N, M, S::States>, h: R, counts: &mut Counts
+        ) -> Result<SteppedInModes<R, S::Parameters, N, M, S::States>, Failure> }
+    };
     (@phases_after $($by:tt)+) => {
         forward! { ($($by)+) phases_after(
             model: &Model<'_, S, R, N, M>, t: R, h: R

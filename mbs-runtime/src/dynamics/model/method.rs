@@ -42,6 +42,17 @@ pub(crate) fn require_slopes_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usiz
     missing.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
 }
 
+/// A step that has gone over impacts and changes of modes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SteppedInModes<R, P, const N: usize, const M: usize, Z> {
+    /// The instant at its end.
+    pub next: Instant<R, N, M, Z>,
+    /// Parameters with the modes at its end; `None` where they are those of its start.
+    pub parameters: Option<P>,
+    /// Energy (J) that impacts brought in: none, or less.
+    pub gained: R,
+}
+
 /// A way to move on: integrator and formulation in one.
 pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     /// Accelerations and multipliers at a state.
@@ -68,6 +79,28 @@ pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure>;
+
+    /// `true` of a method whose steps go over impacts and changes of modes, by [`step_in_modes`](Self::step_in_modes). Other methods end a step
+    /// where one is.
+    fn steps_over_modes(&self) -> bool {
+        false
+    }
+
+    /// [`step`](Self::step) with the modes in which it ends, where [`steps_over_modes`](Self::steps_over_modes).
+    ///
+    /// # Errors
+    /// Those of [`step`](Self::step); [`FailureKind::ImpactUndecided`], [`FailureKind::ContactUndecided`] and
+    /// [`FailureKind::StickingUndecided`] where no forces of contacts and frictions are found.
+    fn step_in_modes(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<SteppedInModes<R, S::Parameters, N, M, S::States>, Failure> {
+        let next = self.step(model, from, h, counts)?;
+        Ok(SteppedInModes { next, parameters: None, gained: R::constant(0.0) })
+    }
 
     /// The phases of drives that prescribe a rate after a step of `h` from `t` (s); none where they are those of
     /// [`Mechanism::advance_phases`](crate::Mechanism::advance_phases).
@@ -117,5 +150,5 @@ where
     R: Real,
     X: Method<S, R, N, M> + ?Sized,
 {
-    forward! { |it| **it => solve, step, phases_after, require_suitable, check_step, leaves_constraints, doubt }
+    forward! { |it| **it => solve, step, steps_over_modes, step_in_modes, phases_after, require_suitable, check_step, leaves_constraints, doubt }
 }

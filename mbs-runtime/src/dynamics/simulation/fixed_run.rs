@@ -4,7 +4,7 @@ use crate::dynamics::formulations::singular::passage::Passage;
 use crate::dynamics::integrators::step_control::{MOST_RETAKES, Point, cubic};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::instant::Instant;
-use crate::dynamics::model::method::Method;
+use crate::dynamics::model::method::{Method, SteppedInModes};
 use crate::dynamics::model::{Counts, Model};
 use crate::dynamics::simulation::graded_steps::ContactSteps;
 use crate::dynamics::simulation::{Fresh, Simulation};
@@ -14,14 +14,18 @@ use crate::scalar::number::Real;
 use crate::tolerances::motion;
 
 /// A step of fixed size that is not taken yet.
-pub(super) struct Ahead<R, P, const N: usize, const M: usize, Z> {
+pub(super) struct Ahead<R, P, G, const N: usize, const M: usize, Z> {
     pub(super) from: Fresh<R, N, M, Z>,
     pub(super) next: Instant<R, N, M, Z>,
     phases: Option<P>,
     pub(super) counts: Counts,
+    /// Parameters with the modes at its end and the energy (J) that impacts brought in, of a step that goes over them.
+    modes: Option<(G, R)>,
 }
 
-impl<R: Real, P, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R]>> Ahead<R, P, N, M, Z> {
+impl<R: Real, P, G, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R]>>
+    Ahead<R, P, G, N, M, Z>
+{
     /// Times (s) of its beginning and of its end.
     pub(super) fn times(&self) -> (R, R) {
         (self.from.instant.t, self.next.t)
@@ -72,8 +76,14 @@ struct FixedStepAttempt<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: u
 }
 
 /// A step of a simulation.
-pub(super) type AheadOf<S, R, const N: usize, const M: usize> =
-    Ahead<R, <S as crate::mechanism::Mechanism<R, N, M>>::Phases, N, M, <S as Dynamic<R, N, M>>::States>;
+pub(super) type AheadOf<S, R, const N: usize, const M: usize> = Ahead<
+    R,
+    <S as crate::mechanism::Mechanism<R, N, M>>::Phases,
+    <S as crate::mechanism::Mechanism<R, N, M>>::Parameters,
+    N,
+    M,
+    <S as Dynamic<R, N, M>>::States,
+>;
 
 impl<S, X, R, const N: usize, const M: usize> Simulation<S, X, R, N, M>
 where
@@ -120,7 +130,7 @@ where
         if const { S::HAS_MODES } {
             return self.step_in_parts(self.now.t + h);
         }
-        if const { !S::CONTACTS.is_empty() } {
+        if const { !S::CONTACTS.is_empty() } && !self.method.steps_over_modes() {
             return self.step_with_contacts(h);
         }
         self.whole_step(h)
@@ -220,14 +230,25 @@ where
             parameters = left_out;
         }
         let model = Model { parameters, ..model };
+        let mut modes = None;
         // No `map_err`, which would move the whole instant once more.
-        let next = match self.method.step(&model, from, h, &mut counts) {
-            Ok(next) => next,
-            Err(failure) => return Err(model.traced(failure, from.t, &from.y)),
+        let next = if const { S::HAS_MODES } && self.method.steps_over_modes() {
+            match self.method.step_in_modes(&model, from, h, &mut counts) {
+                Ok(SteppedInModes { next, parameters, gained }) => {
+                    modes = parameters.map(|parameters| (parameters, gained));
+                    next
+                }
+                Err(failure) => return Err(model.traced(failure, from.t, &from.y)),
+            }
+        } else {
+            match self.method.step(&model, from, h, &mut counts) {
+                Ok(next) => next,
+                Err(failure) => return Err(model.traced(failure, from.t, &from.y)),
+            }
         };
         let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps = self.counts.steps + 1;
-        Ok(Ahead { from: fresh, next, phases, counts })
+        Ok(Ahead { from: fresh, next, phases, counts, modes })
     }
 
     /// Fails where a step does not end as one of a motion.
@@ -256,6 +277,12 @@ where
 
     /// Takes a step.
     pub(super) fn go(&mut self, ahead: &AheadOf<S, R, N, M>) {
+        if const { S::HAS_MODES }
+            && let Some((parameters, gained)) = &ahead.modes
+        {
+            self.take_modes(Some(parameters));
+            self.reference = self.reference + *gained;
+        }
         self.go_on(ahead.ends(), ahead.phases, ahead.counts);
     }
 
@@ -330,7 +357,7 @@ where
     /// A step of `h` (s), or up to where a contact closes or opens. Nothing after that is judged.
     pub(super) fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
         let over = S::CONTACTS.is_empty() || self.contact_steps == ContactSteps::Unlocated;
-        if !S::HAS_MODES && over {
+        if !S::HAS_MODES && over || self.method.steps_over_modes() {
             return self.ahead(h, self.counts, false);
         }
         let mut trial = self.trial_with_contacts(h, self.counts)?;

@@ -205,9 +205,9 @@ pub(super) fn event_failure<R: Real>(why: Unanswered<R>) -> Failure {
 }
 
 /// Time (s) at which an event is reached on the cubic of a step, and the scale of its function.
-fn reached<R: Real, P, Z, const N: usize, const M: usize>(
+fn reached<R: Real, P, G, Z, const N: usize, const M: usize>(
     monitor: &mut Monitor<R>,
-    ahead: &Ahead<R, P, N, M, Z>,
+    ahead: &Ahead<R, P, G, N, M, Z>,
     event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
 ) -> Result<Option<(R, R)>, Failure>
 where
@@ -222,8 +222,8 @@ where
 }
 
 /// Time (s) after the end of a step at which its slope leads an event function to zero; 0 where it leads away.
-fn further<R: Real, P, Z, const N: usize, const M: usize>(
-    ahead: &Ahead<R, P, N, M, Z>,
+fn further<R: Real, P, G, Z, const N: usize, const M: usize>(
+    ahead: &Ahead<R, P, G, N, M, Z>,
     event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
 ) -> R
 where

@@ -59,7 +59,10 @@ where
         Projection::default().project(&model, t, &mut y, &mut counts)?;
         let parameters = events::anew(&self.method, &model, (t, &y), (&mut counts, false))?;
         let model = Model { parameters: &parameters, ..model };
-        let parameters = anew(&self.method, &model, (t, &y), &mut counts)?;
+        let parameters = match self.method.steps_over_modes() {
+            true => model.released(t, &y)?,
+            false => anew(&self.method, &model, (t, &y), &mut counts)?,
+        };
         (self.parameters, self.counts) = (parameters, counts);
         Ok(())
     }
@@ -81,6 +84,9 @@ where
         self.decide_modes_anew()?;
         if self.stale {
             return Ok(());
+        }
+        if self.method.steps_over_modes() {
+            return self.switch();
         }
         self.strike()?;
         self.switch()?;

@@ -25,6 +25,8 @@ pub enum MethodName {
     Extrapolated,
     /// Implicit steps of `--step` by generalised-alpha, for stiff forces
     GeneralizedAlpha,
+    /// Steps of `--step` over impacts by Moreau and Jean, for many rigid contacts and frictions that stick: order 1
+    MoreauJean,
     /// Implicit steps by Radau IIA of order 5, adaptive within `--tolerance`, for stiff forces
     Radau,
 }
@@ -39,7 +41,10 @@ impl MethodName {
     pub fn is_implicit(self) -> bool {
         matches!(
             self,
-            MethodName::AugmentedLagrangian | MethodName::Extrapolated | MethodName::GeneralizedAlpha
+            MethodName::AugmentedLagrangian
+                | MethodName::Extrapolated
+                | MethodName::GeneralizedAlpha
+                | MethodName::MoreauJean
         )
     }
 }
@@ -121,6 +126,7 @@ impl Damping {
             MethodName::AugmentedLagrangian => implicit(ImplicitMethod::AugmentedLagrangian),
             MethodName::Extrapolated => implicit(ImplicitMethod::Extrapolated),
             MethodName::GeneralizedAlpha => implicit(ImplicitMethod::GeneralizedAlpha),
+            MethodName::MoreauJean => implicit(ImplicitMethod::MoreauJean),
             MethodName::Radau => Stabilization::Radau,
             MethodName::Projection => Stabilization::Projection,
             MethodName::None => Stabilization::None,

@@ -64,7 +64,7 @@ impl Request {
             (
                 implicit && self.used_options.integrator,
                 "`--integrator`",
-                "is for methods without steps of their own; an implicit one takes `--step`",
+                "is for methods without steps of their own; others take `--step`",
             ),
             (
                 self.used_options.radau && self.used_options.integrator,
@@ -74,12 +74,12 @@ impl Request {
             (
                 implicit && self.used_options.tolerance,
                 "`--tolerance`",
-                "is for adaptive steps; an implicit method takes `--step`",
+                "is for adaptive steps; this method takes `--step`",
             ),
             (
                 !implicit && adaptive && self.used_options.step,
                 "`--step`",
-                "is for implicit methods and for `--integrator rk4` or `euler`; adaptive steps take `--tolerance`",
+                "is for methods with steps of their own and for `--integrator rk4` or `euler`; adaptive steps take `--tolerance`",
             ),
             (
                 !implicit && !adaptive && self.used_options.tolerance,

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Counts, Embedded, Explicit, Extrapolated, Formulation, GeneralizedAlpha,
-    Method, MethodWarning, MovedStart, Penalty, ProjectedStages, Projection, Radau5, Simulation, Tolerance,
-    Unstabilized, VelocityTransformation,
+    Method, MethodWarning, MoreauJean, MovedStart, Penalty, ProjectedStages, Projection, Radau5, Simulation,
+    Tolerance, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, FailureKind, Partitioned};
 
@@ -47,7 +47,7 @@ pub struct Implicit {
     pub longest: f64,
 }
 
-/// Methods for stiff mechanisms.
+/// Methods with steps and a formulation of their own, for stiff mechanisms and for many contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImplicitMethod {
     /// Trapezoidal rule with penalties, multipliers and projections; redundant rows need no care.
@@ -56,6 +56,8 @@ pub enum ImplicitMethod {
     Extrapolated,
     /// Generalised-α on the equations of index 3, ρ∞ = 0.8.
     GeneralizedAlpha,
+    /// Time-stepping of Moreau and Jean over impacts; explicit in the forces.
+    MoreauJean,
 }
 
 /// Step size selection.
@@ -254,6 +256,10 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M> + 'static, I: Integrators, const N:
             ImplicitMethod::GeneralizedAlpha => {
                 let by = GeneralizedAlpha::default();
                 let by = (&by as AnyMethod<'_, S, N, M>, Quadrature::Trapezoidal);
+                implicit(mechanism, by, &start, longest, times, progress)
+            }
+            ImplicitMethod::MoreauJean => {
+                let by = (&MoreauJean as AnyMethod<'_, S, N, M>, Quadrature::Trapezoidal);
                 implicit(mechanism, by, &start, longest, times, progress)
             }
         },

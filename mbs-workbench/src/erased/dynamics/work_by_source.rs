@@ -5,6 +5,7 @@
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Counts, Extrapolated, Formulation, Instant, IntegratorState, Method, Model, Solved,
+    SteppedInModes,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure};
 
@@ -220,6 +221,27 @@ where
         next.solved.rate.work = after;
         Ok(next)
     }
+
+    fn steps_over_modes(&self) -> bool {
+        self.by.0.steps_over_modes()
+    }
+
+    fn step_in_modes(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        from: &Instant<f64, N, M, S::States>,
+        h: f64,
+        counts: &mut Counts,
+    ) -> Result<SteppedInModes<f64, S::Parameters, N, M, S::States>, Failure> {
+        let mut stepped = self.by.0.step_in_modes(model, from, h, counts)?;
+        // Powers of the end are those of its modes.
+        let parameters = stepped.parameters.unwrap_or(*model.parameters);
+        let after = self.power_at(&Model { parameters: &parameters, ..*model }, from.t, &stepped.next);
+        let next = &mut stepped.next;
+        next.y.work = from.y.work + 0.5 * h * (from.solved.rate.work + after);
+        next.solved.rate.work = after;
+        Ok(stepped)
+    }
 }
 
 impl<X> Counted<'_, X> {
@@ -284,6 +306,10 @@ fn moved<S: Dynamic<f64, N, M>, X, const N: usize, const M: usize>(
     let mut mechanism = model.mechanism.clone();
     mechanism.carry_signals(model.mechanism, to - from);
     mechanism.advance_phases(from, to);
-    let parameters = mechanism.parameters();
+    let mut parameters = mechanism.parameters();
+    let modes = S::set_valued_modes_mut(&mut parameters).iter_mut();
+    modes.zip(S::set_valued_modes(model.parameters)).for_each(|(to, from)| *to = *from);
+    let values = S::remembered_mut(&mut parameters).iter_mut();
+    values.zip(S::remembered(model.parameters)).for_each(|(to, from)| *to = *from);
     look(&Model { mechanism: &mechanism, parameters: &parameters, ..*model })
 }

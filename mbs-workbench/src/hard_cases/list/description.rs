@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::hard_cases::variation::Class;
-use crate::setting::{FormulationName, IntegratorName, MotionMethod};
+use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod};
 
 /// Description of a case.
 #[derive(Clone, Debug, Deserialize)]
@@ -184,6 +184,7 @@ impl MethodKind {
     pub fn of(method: MotionMethod) -> Self {
         use FormulationName::{Baumgarte, Penalty, Unstabilized};
         match method {
+            MotionMethod::Implicit(ImplicitName::MoreauJean) => MethodKind::Euler,
             MotionMethod::Implicit(_) => MethodKind::Implicit,
             MotionMethod::Explicit(Penalty, _) => MethodKind::Soft,
             MotionMethod::Explicit(_, IntegratorName::SemiImplicitEuler) => MethodKind::Euler,

@@ -244,8 +244,16 @@ pub fn run_27() -> Result<f64, Failure> {
     Ok(f64::from(run.q()[1]))
 }
 
-/// Projection with DormandPrince8, f32, tolerance 1e-4.
+/// MoreauJean, 2000 steps.
 pub fn run_28() -> Result<f64, Failure> {
+    let method = MoreauJean;
+    let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f64)?;
+    run.step_to(1.0, 2000)?;
+    Ok(f64::from(run.q()[1]))
+}
+
+/// Projection with DormandPrince8, f32, tolerance 1e-4.
+pub fn run_29() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince8, Projection::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -254,7 +262,7 @@ pub fn run_28() -> Result<f64, Failure> {
 }
 
 /// Projection with DormandPrince5, f32, tolerance 1e-4.
-pub fn run_29() -> Result<f64, Failure> {
+pub fn run_30() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince5, Projection::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -263,7 +271,7 @@ pub fn run_29() -> Result<f64, Failure> {
 }
 
 /// Projection with Radau5, f32, tolerance 1e-4.
-pub fn run_30() -> Result<f64, Failure> {
+pub fn run_31() -> Result<f64, Failure> {
     let method = Explicit::new(Radau5, Projection::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -272,7 +280,7 @@ pub fn run_30() -> Result<f64, Failure> {
 }
 
 /// Projection with RungeKutta4, f32, 2000 steps.
-pub fn run_31() -> Result<f64, Failure> {
+pub fn run_32() -> Result<f64, Failure> {
     let method = Explicit::new(RungeKutta4, Projection::default());
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -280,7 +288,7 @@ pub fn run_31() -> Result<f64, Failure> {
 }
 
 /// Projection with SemiImplicitEuler, f32, 2000 steps.
-pub fn run_32() -> Result<f64, Failure> {
+pub fn run_33() -> Result<f64, Failure> {
     let method = Explicit::new(SemiImplicitEuler, Projection::default());
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -288,7 +296,7 @@ pub fn run_32() -> Result<f64, Failure> {
 }
 
 /// VelocityTransformation with DormandPrince8, f32, tolerance 1e-4.
-pub fn run_33() -> Result<f64, Failure> {
+pub fn run_34() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince8, VelocityTransformation);
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -297,7 +305,7 @@ pub fn run_33() -> Result<f64, Failure> {
 }
 
 /// VelocityTransformation with DormandPrince5, f32, tolerance 1e-4.
-pub fn run_34() -> Result<f64, Failure> {
+pub fn run_35() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince5, VelocityTransformation);
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -306,7 +314,7 @@ pub fn run_34() -> Result<f64, Failure> {
 }
 
 /// VelocityTransformation with Radau5, f32, tolerance 1e-4.
-pub fn run_35() -> Result<f64, Failure> {
+pub fn run_36() -> Result<f64, Failure> {
     let method = Explicit::new(Radau5, VelocityTransformation);
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -315,7 +323,7 @@ pub fn run_35() -> Result<f64, Failure> {
 }
 
 /// VelocityTransformation with RungeKutta4, f32, 2000 steps.
-pub fn run_36() -> Result<f64, Failure> {
+pub fn run_37() -> Result<f64, Failure> {
     let method = Explicit::new(RungeKutta4, VelocityTransformation);
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -323,7 +331,7 @@ pub fn run_36() -> Result<f64, Failure> {
 }
 
 /// VelocityTransformation with SemiImplicitEuler, f32, 2000 steps.
-pub fn run_37() -> Result<f64, Failure> {
+pub fn run_38() -> Result<f64, Failure> {
     let method = Explicit::new(SemiImplicitEuler, VelocityTransformation);
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -331,7 +339,7 @@ pub fn run_37() -> Result<f64, Failure> {
 }
 
 /// Baumgarte with DormandPrince8, f32, tolerance 1e-4.
-pub fn run_38() -> Result<f64, Failure> {
+pub fn run_39() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince8, Baumgarte::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -340,7 +348,7 @@ pub fn run_38() -> Result<f64, Failure> {
 }
 
 /// Baumgarte with DormandPrince5, f32, tolerance 1e-4.
-pub fn run_39() -> Result<f64, Failure> {
+pub fn run_40() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince5, Baumgarte::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -349,7 +357,7 @@ pub fn run_39() -> Result<f64, Failure> {
 }
 
 /// Baumgarte with Radau5, f32, tolerance 1e-4.
-pub fn run_40() -> Result<f64, Failure> {
+pub fn run_41() -> Result<f64, Failure> {
     let method = Explicit::new(Radau5, Baumgarte::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -358,7 +366,7 @@ pub fn run_40() -> Result<f64, Failure> {
 }
 
 /// Baumgarte with RungeKutta4, f32, 2000 steps.
-pub fn run_41() -> Result<f64, Failure> {
+pub fn run_42() -> Result<f64, Failure> {
     let method = Explicit::new(RungeKutta4, Baumgarte::default());
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -366,7 +374,7 @@ pub fn run_41() -> Result<f64, Failure> {
 }
 
 /// Baumgarte with SemiImplicitEuler, f32, 2000 steps.
-pub fn run_42() -> Result<f64, Failure> {
+pub fn run_43() -> Result<f64, Failure> {
     let method = Explicit::new(SemiImplicitEuler, Baumgarte::default());
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -374,7 +382,7 @@ pub fn run_42() -> Result<f64, Failure> {
 }
 
 /// Penalty with DormandPrince8, f32, tolerance 1e-4.
-pub fn run_43() -> Result<f64, Failure> {
+pub fn run_44() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince8, Penalty::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -383,7 +391,7 @@ pub fn run_43() -> Result<f64, Failure> {
 }
 
 /// Penalty with DormandPrince5, f32, tolerance 1e-4.
-pub fn run_44() -> Result<f64, Failure> {
+pub fn run_45() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince5, Penalty::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -392,7 +400,7 @@ pub fn run_44() -> Result<f64, Failure> {
 }
 
 /// Penalty with Radau5, f32, tolerance 1e-4.
-pub fn run_45() -> Result<f64, Failure> {
+pub fn run_46() -> Result<f64, Failure> {
     let method = Explicit::new(Radau5, Penalty::default());
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -401,7 +409,7 @@ pub fn run_45() -> Result<f64, Failure> {
 }
 
 /// Penalty with RungeKutta4, f32, 2000 steps.
-pub fn run_46() -> Result<f64, Failure> {
+pub fn run_47() -> Result<f64, Failure> {
     let method = Explicit::new(RungeKutta4, Penalty::default());
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -409,7 +417,7 @@ pub fn run_46() -> Result<f64, Failure> {
 }
 
 /// Penalty with SemiImplicitEuler, f32, 2000 steps.
-pub fn run_47() -> Result<f64, Failure> {
+pub fn run_48() -> Result<f64, Failure> {
     let method = Explicit::new(SemiImplicitEuler, Penalty::default());
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -417,7 +425,7 @@ pub fn run_47() -> Result<f64, Failure> {
 }
 
 /// Unstabilized with DormandPrince8, f32, tolerance 1e-4.
-pub fn run_48() -> Result<f64, Failure> {
+pub fn run_49() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince8, Unstabilized);
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -426,7 +434,7 @@ pub fn run_48() -> Result<f64, Failure> {
 }
 
 /// Unstabilized with DormandPrince5, f32, tolerance 1e-4.
-pub fn run_49() -> Result<f64, Failure> {
+pub fn run_50() -> Result<f64, Failure> {
     let method = Explicit::new(DormandPrince5, Unstabilized);
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -435,7 +443,7 @@ pub fn run_49() -> Result<f64, Failure> {
 }
 
 /// Unstabilized with Radau5, f32, tolerance 1e-4.
-pub fn run_50() -> Result<f64, Failure> {
+pub fn run_51() -> Result<f64, Failure> {
     let method = Explicit::new(Radau5, Unstabilized);
     let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     let mut run = run.with_tolerance(Tolerance::new(1e-4));
@@ -444,7 +452,7 @@ pub fn run_50() -> Result<f64, Failure> {
 }
 
 /// Unstabilized with RungeKutta4, f32, 2000 steps.
-pub fn run_51() -> Result<f64, Failure> {
+pub fn run_52() -> Result<f64, Failure> {
     let method = Explicit::new(RungeKutta4, Unstabilized);
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -452,7 +460,7 @@ pub fn run_51() -> Result<f64, Failure> {
 }
 
 /// Unstabilized with SemiImplicitEuler, f32, 2000 steps.
-pub fn run_52() -> Result<f64, Failure> {
+pub fn run_53() -> Result<f64, Failure> {
     let method = Explicit::new(SemiImplicitEuler, Unstabilized);
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -460,7 +468,7 @@ pub fn run_52() -> Result<f64, Failure> {
 }
 
 /// AugmentedLagrangian, f32, 2000 steps.
-pub fn run_53() -> Result<f64, Failure> {
+pub fn run_54() -> Result<f64, Failure> {
     let method = AugmentedLagrangian;
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -468,7 +476,7 @@ pub fn run_53() -> Result<f64, Failure> {
 }
 
 /// Extrapolated, f32, 2000 steps.
-pub fn run_54() -> Result<f64, Failure> {
+pub fn run_55() -> Result<f64, Failure> {
     let method = Extrapolated;
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
@@ -476,12 +484,20 @@ pub fn run_54() -> Result<f64, Failure> {
 }
 
 /// GeneralizedAlpha, f32, 2000 steps.
-pub fn run_55() -> Result<f64, Failure> {
+pub fn run_56() -> Result<f64, Failure> {
     let method = GeneralizedAlpha::default();
     let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
     run.step_to(1.0, 2000)?;
     Ok(f64::from(run.q()[1]))
 }
 
+/// MoreauJean, f32, 2000 steps.
+pub fn run_57() -> Result<f64, Failure> {
+    let method = MoreauJean;
+    let mut run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f32)?;
+    run.step_to(1.0, 2000)?;
+    Ok(f64::from(run.q()[1]))
+}
+
 /// All of them.
-pub const ALL: [fn() -> Result<f64, Failure>; 56] = [run_0, run_1, run_2, run_3, run_4, run_5, run_6, run_7, run_8, run_9, run_10, run_11, run_12, run_13, run_14, run_15, run_16, run_17, run_18, run_19, run_20, run_21, run_22, run_23, run_24, run_25, run_26, run_27, run_28, run_29, run_30, run_31, run_32, run_33, run_34, run_35, run_36, run_37, run_38, run_39, run_40, run_41, run_42, run_43, run_44, run_45, run_46, run_47, run_48, run_49, run_50, run_51, run_52, run_53, run_54, run_55];
+pub const ALL: [fn() -> Result<f64, Failure>; 58] = [run_0, run_1, run_2, run_3, run_4, run_5, run_6, run_7, run_8, run_9, run_10, run_11, run_12, run_13, run_14, run_15, run_16, run_17, run_18, run_19, run_20, run_21, run_22, run_23, run_24, run_25, run_26, run_27, run_28, run_29, run_30, run_31, run_32, run_33, run_34, run_35, run_36, run_37, run_38, run_39, run_40, run_41, run_42, run_43, run_44, run_45, run_46, run_47, run_48, run_49, run_50, run_51, run_52, run_53, run_54, run_55, run_56, run_57];

@@ -365,7 +365,7 @@ fn slip<R: Real>(rate: R) -> R {
 }
 
 /// Contacts of `mask`, and the frictions on them.
-fn rubbing<R: Real, const N: usize, const K: usize>(
+pub(crate) fn rubbing<R: Real, const N: usize, const K: usize>(
     rows: &[SetValuedRow<R, N>; K],
     mask: &[bool; K],
 ) -> [bool; K] {

@@ -27,20 +27,20 @@ const MOST_ENUMERATED: usize = 8;
 const HALVINGS: usize = 52;
 
 /// An impact of contacts with frictions on them.
-pub(super) struct Impact<'a, R, const N: usize, const K: usize> {
+pub(crate) struct Impact<'a, R, const N: usize, const K: usize> {
     /// Contacts and frictions, at the velocities before the impact.
-    pub(super) rows: &'a [SetValuedRow<R, N>; K],
+    pub(crate) rows: &'a [SetValuedRow<R, N>; K],
     /// Which take part.
-    pub(super) part: [bool; K],
+    pub(crate) part: [bool; K],
     /// Changes of velocities by unit impulses: K of N.
-    pub(super) answers: &'a [[R; N]; K],
+    pub(crate) answers: &'a [[R; N]; K],
 }
 
 /// Impulses (N s) of an impact, and which frictions stick after it.
 #[derive(Clone, Copy)]
-pub(super) struct Struck<R, const K: usize> {
-    pub(super) impulses: [R; K],
-    pub(super) sticks: [bool; K],
+pub(crate) struct Struck<R, const K: usize> {
+    pub(crate) impulses: [R; K],
+    pub(crate) sticks: [bool; K],
     /// Changes of the rates of rows.
     changes: [R; K],
     /// Sizes of the terms of the rates after it.
@@ -51,7 +51,7 @@ pub(super) struct Struck<R, const K: usize> {
 
 impl<R: Real, const N: usize, const K: usize> Impact<'_, R, N, K> {
     /// Impulses that fulfil the law and bring in no energy, with restitutions times `share`; `None` where there are none or several.
-    pub(super) fn solve(&self, share: R) -> Option<Struck<R, K>> {
+    pub(crate) fn solve(&self, share: R) -> Option<Struck<R, K>> {
         let found = self.of_share(share)?;
         if found.takes_energy() {
             return Some(found);
@@ -230,7 +230,7 @@ impl<R: Real, const K: usize> Struck<R, K> {
 }
 
 /// P ≥ 0 (K) with W P + b ≥ 0 and one of both 0 in each row of `part`; 0 elsewhere. `None` where changes of the active set do not end.
-pub(super) fn impulses<R: Real, const N: usize, const K: usize>(
+pub(crate) fn impulses<R: Real, const N: usize, const K: usize>(
     rows: &[SetValuedRow<R, N>; K],
     part: &[bool; K],
     b: &[R; K],

@@ -9,9 +9,9 @@
 
 pub(crate) mod decide;
 pub(crate) mod impact;
-mod impulses;
+pub(crate) mod impulses;
 mod modes;
-mod shares;
+pub(crate) mod shares;
 pub(crate) mod slips;
 
 use crate::dynamics::formulations::projection::correction_factors;
@@ -117,6 +117,24 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         }
         let forces = Forces { model: self, open, parameters: *parameters };
         (mechanism.set_valued_rows(parameters, position, &y.qd, &y.states, lambda, forces), most)
+    }
+
+    /// Parameters in which nothing holds that has been moved away: contacts are open, and frictions stick where they are now.
+    ///
+    /// # Errors
+    /// [`FailureKind::Penetration`](crate::FailureKind::Penetration) of a contact that is below the gap that it had.
+    pub(crate) fn released(
+        &self,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+    ) -> Result<S::Parameters, Failure> {
+        if const { S::SET_VALUED.is_empty() } {
+            return Ok(*self.parameters);
+        }
+        let position = self.position(t, y);
+        let released = Released { model: self, t, q: &y.q, parameters: *self.parameters };
+        let none = [R::constant(0.0); M];
+        self.mechanism.set_valued_rows(self.parameters, &position, &y.qd, &y.states, &none, released)
     }
 
     /// Brings a state to a step's end: positions and velocities of a formulation, with what sticks where it sticks.
@@ -392,5 +410,43 @@ where
             step = step.plus(*share, &[1.0], [answer]);
         }
         Ok(Some(step))
+    }
+}
+
+/// Modes without what has been moved away from where it held.
+struct Released<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    model: &'a Model<'a, S, R, N, M>,
+    t: R,
+    q: &'a [R; N],
+    parameters: S::Parameters,
+}
+
+impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for Released<'_, S, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+{
+    type Output = Result<S::Parameters, Failure>;
+
+    fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
+        let modes = S::set_valued_modes_mut(&mut self.parameters).iter_mut().zip(rows).enumerate();
+        for (index, (mode, row)) in modes {
+            if row.restitution.is_some() {
+                let above = SetValuedRow { place: row.place - mode.place, ..*row };
+                self.model.require_apart(self.t, self.q, (index, &above))?;
+            }
+            if !sticks(mode) {
+                continue;
+            }
+            let none = set_valued::PENETRATION.of::<R>() * of_gap(row, self.q, self.model.metric);
+            if (row.place - mode.place).abs() <= none {
+                continue;
+            }
+            match row.restitution {
+                Some(_) => (mode.direction, mode.place) = (R::constant(1.0), R::constant(0.0)),
+                None => mode.place = row.place,
+            }
+        }
+        Ok(self.parameters)
     }
 }

@@ -21,7 +21,7 @@ const WITHIN: f64 = 4.0;
 /// Forces of W h = b, b = `right` (K), of rows that stick, `entry` those of W. Where rows follow from others, forces beyond their limits
 /// are taken over by others as far as these can: one row after the other is kept within its limit, the one that exceeds it most first. A
 /// contact exceeds it where it pulls.
-pub(super) fn within_limits<R: Real, const N: usize, const K: usize>(
+pub(crate) fn within_limits<R: Real, const N: usize, const K: usize>(
     rows: &[SetValuedRow<R, N>; K],
     mut mask: [bool; K],
     right: &[R; K],
