@@ -261,14 +261,14 @@ impl fmt::Display for Failure {
             FailureKind::SetValuedForce { row } => write!(
                 f,
                 "`{}` (line {}) is a friction that sticks or a rigid contact, and has no slopes at rest, which rests, small motions and \
-                 implicit methods need: follow the motion by an explicit method, as `DormandPrince8`, or take a smooth law, `speed` in place of \
-                 `sticks`, a contact with `stiffness`",
+                 implicit methods of fixed steps need: follow the motion by `Explicit` with `Radau5`, or `DormandPrince8` where it is not stiff, \
+                 or take a smooth law, `speed` in place of `sticks`, a contact with `stiffness`",
                 row.name, row.line
             ),
             FailureKind::EventOfMotion { event } => write!(
                 f,
-                "event `{}` (line {}) sets values that are known in a motion by an explicit method alone: take one, as `DormandPrince8`, or a \
-                 scene without the event",
+                "event `{}` (line {}) sets values that are known in a motion by `Explicit` alone: take it, with `Radau5`, or `DormandPrince8` where \
+                 the motion is not stiff, or a scene without the event",
                 event.name, event.line
             ),
             FailureKind::StickingUndecided { row } => write!(

@@ -205,7 +205,7 @@ pub enum FailureKind {
         /// The friction or contact.
         row: &'static Entry,
     },
-    /// Values that an event sets are known within a motion by an explicit method alone.
+    /// Values that an event sets are known within a motion by [`Explicit`](crate::dynamics::Explicit) alone.
     EventOfMotion {
         /// The first event of the text.
         event: &'static Entry,

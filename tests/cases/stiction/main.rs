@@ -6,6 +6,7 @@ mod blocks;
 mod bounces;
 mod bristles;
 mod contacts;
+mod implicit;
 mod pendulum;
 mod refusals;
 mod slope;

@@ -11,11 +11,20 @@ use crate::scalar::number::Real;
 /// Fails where a text has functions that are not smooth enough for a [`Tangent`].
 ///
 /// # Errors
+/// [`FailureKind::NotSmooth`].
+pub(crate) fn require_smooth<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
+-> Result<(), Failure> {
+    S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
+}
+
+/// [`require_smooth`] of a method or analysis that knows no modes.
+///
+/// # Errors
 /// [`FailureKind::NotSmooth`], [`FailureKind::SetValuedForce`], [`FailureKind::EventOfMotion`].
 pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
     require_no_stiction::<S, R, N, M>()?;
-    S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
+    require_smooth::<S, R, N, M>()
 }
 
 /// Fails where a text has friction with stiction or events: outside a motion that knows whether it sticks or slides, and what has begun.
