@@ -2,7 +2,7 @@
 
 use mbs_runtime::dynamics::{
     Direction, DormandPrince5, DormandPrince8, Explicit, Formulation, GeneralizedAlpha, Projection,
-    RungeKutta4, Simulation, Tolerance, Unstabilized, VelocityTransformation, equilibrium,
+    RungeKutta4, Simulation, Tolerance, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, FailureKind, mechanism};
 
@@ -349,7 +349,6 @@ fn what_is_undefined_is_refused() {
             "{failure}"
         );
     };
-    refused(equilibrium(&Ball::default(), 0.0, &[0.0]).err());
     refused(Simulation::start_from_text(Ball::default(), GeneralizedAlpha::default(), 0.0_f64).err());
     let mut run = Simulation::start_from_text(Ball::default(), method, 0.0_f64).expect("it starts");
     run.advance_to(1.0).expect("it bounces");

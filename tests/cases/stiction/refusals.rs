@@ -1,8 +1,6 @@
 //! Methods and analyses that need slopes of the forces refuse friction that sticks.
 
-use mbs_runtime::dynamics::{
-    AugmentedLagrangian, Extrapolated, GeneralizedAlpha, Method, Simulation, equilibrium, inverse, linearize,
-};
+use mbs_runtime::dynamics::{AugmentedLagrangian, Extrapolated, GeneralizedAlpha, Method, Simulation};
 use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
@@ -29,7 +27,4 @@ fn what_needs_slopes_is_refused_with_a_cure() {
     starts(AugmentedLagrangian);
     starts(GeneralizedAlpha::default());
     starts(Extrapolated);
-    refused(equilibrium(&Block::default(), 0.0, &[0.0]));
-    refused(inverse(&Block::default(), 0.0, &[0.0]));
-    refused(linearize(&Block::default(), 0.0, (&[0.0], &[0.0], &[0.0]), &[]));
 }
