@@ -160,18 +160,18 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         let rates = rates.iter().zip(&metric.coordinates);
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
     };
+    let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
+    if let Some(rates) = &judged.filter(|_| !S::SET_VALUED.is_empty()) {
+        let free = FreeOfHeld { model: &model, t, y, rates, basis: (basis, freedom) };
+        (basis, freedom) =
+            mechanism.set_valued_rows(&parameters, &position, &y.qd, &y.states, lambda, free)?;
+    }
     let slow = scaled(&y.qd) <= forces::AT_REST.of();
     if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(&model, t, y, (&position, qdd), lambda)?) {
         model.require_nothing_held(t)?;
         let variation = Variation::of(&model, (t, y, qdd), &position, independent)?;
         let (linear, rates) = moving(&tangent, &variation);
         return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &rates))));
-    }
-    let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
-    if let Some(rates) = &judged.filter(|_| !S::SET_VALUED.is_empty()) {
-        let free = FreeOfHeld { model: &model, t, y, rates, basis: (basis, freedom) };
-        (basis, freedom) =
-            mechanism.set_valued_rows(&parameters, &position, &y.qd, &y.states, lambda, free)?;
     }
     let reduced = |matrix: &[[R; N]; N]| reduced(&basis, &basis.map(|right| times(matrix, &right)), freedom);
     let linear = Linearization {

@@ -4,7 +4,7 @@ use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::equilibrium::modes::Basis;
 use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::set_valued::{
-    column, is_off, limit, no_force, no_gap, no_rate, of_gap, sticks,
+    column, is_off, limit, no_force, no_gap, no_speed, of_gap, sticks,
 };
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::metric::Metric;
@@ -149,17 +149,6 @@ fn nothing<R: Real, const N: usize, const M: usize>(
     no_gap(row, q, metric).max(forces::AT_REST.of::<R>() * of_gap(row, q, metric))
 }
 
-/// Speed (m/s) of a row that is none: of a state that [rests](forces::AT_REST), or rounding.
-fn no_speed<R: Real, const N: usize, const M: usize>(
-    row: &SetValuedRow<R, N>,
-    qd: &[R; N],
-    metric: &Metric<R, N, M>,
-) -> R {
-    let scales = row.gradient.iter().zip(&metric.coordinates);
-    let reach = scales.fold(R::constant(0.0), |sum, (entry, scale)| sum + (*entry * *scale).abs());
-    no_rate(row, qd, metric).max(forces::AT_REST.of::<R>() * reach)
-}
-
 /// Fails where the force of a row that holds, or its mode, does not follow from a state.
 pub(super) struct Determined<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     pub model: &'a Model<'a, S, R, N, M>,
@@ -187,7 +176,8 @@ where
                 return Err(kind.at(t.to_f64()));
             }
             // A contact that touches and moves strikes or leaves at this instant.
-            let touches = row.restitution.is_some() && row.place <= gap && !sticks(mode);
+            let moves = no_speed(row, &y.qd, metric).less(row.rate.abs());
+            let touches = row.restitution.is_some() && row.place <= gap && moves;
             let force = column::<S, R, N, M, K>(rows, modes, index);
             let motion = factors.solve(&force, &[R::constant(0.0); M]).0;
             if touches || sticks(mode) && basis.add((motion, force), &metric.coordinates).is_err() {

@@ -2,7 +2,7 @@
 
 use crate::dynamics::equilibrium::{Equilibrium, Found, search};
 use crate::dynamics::formulations::projection::Projection;
-use crate::dynamics::formulations::set_valued::{column, is_off, limit, no_gap, sticks};
+use crate::dynamics::formulations::set_valued::{column, is_off, limit, no_gap, no_speed, sticks};
 use crate::dynamics::integrators::event::group::GROUP;
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::tangent::Tangent;
@@ -12,10 +12,6 @@ use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::set_valued::{SetValuedMode, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, set_valued};
-
-/// Energy (J) of a spring that is a reference length long, over the largest force or stiffness in the metric. Each search brings the forces
-/// nearer by about this factor; a soft direction of the text keeps six of the nine digits that stiffness is told in.
-const STIFFER: f64 = 1e3;
 
 /// Searches with the forces of the one before.
 const MOST_SEARCHES: u32 = 40;
@@ -90,8 +86,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         Ok(self.change((t, y), &solved, &mut next)?.map(|event| (next, event)))
     }
 
-    /// Energy (J) of springs a reference length long: [`STIFFER`] times the largest force or stiffness at a state in the metric, without those of
-    /// contacts and frictions; of masses where there is none.
+    /// Energy (J) of springs a reference length long: the largest force or stiffness at a state in the metric over their
+    /// [softness](set_valued::SOFTNESS), without those of contacts and frictions; of masses where there is none.
     pub(crate) fn size_of_springs(&self, position: &S::Position, y: &IntegratorState<R, N, S::States>) -> R {
         let (zero, scales, none) = (R::constant(0.0), &self.metric.coordinates, [R::constant(0.0); M]);
         // At a rest the forces that hold leave rounding of the others.
@@ -113,7 +109,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let pulls = force.iter().zip(scales);
         let pulls = pulls.fold(zero, |size, (force, scale)| size.max((*force * *scale).abs()));
         let size = pulls.max(of(&tangent.stiffness));
-        R::constant(STIFFER) * if zero < size { size } else { of(&tangent.mass) }
+        if zero < size {
+            size / set_valued::SOFTNESS.of()
+        } else {
+            of(&tangent.mass) / set_valued::SOFTNESS.of()
+        }
     }
 }
 
@@ -141,7 +141,7 @@ pub(super) fn search_with_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, co
         let Some((next, event)) = at_rest.event_at_rest(t, &found.y, &found.rest.lambda)? else {
             return Ok(found);
         };
-        (parameters, last, y) = (next, event, found.y);
+        (parameters, last, y, start) = (next, event, found.y, found.y);
     }
     let event = checks::entry(S::EVENTS, u16::try_from(last).unwrap_or(u16::MAX));
     Err(FailureKind::EventOfMotion { event }.at(t.to_f64()))
@@ -287,8 +287,13 @@ where
         off.iter_mut().zip(rows).for_each(|(off, row)| *off = is_off(row, S::set_valued_modes(&parameters)));
         for ((mode, row), off) in S::set_valued_modes_mut(&mut parameters).iter_mut().zip(rows).zip(&off) {
             mode.force = zero;
+            let moves = no_speed(row, &y.qd, self.model.metric).less(row.rate.abs());
             if row.restitution.is_none() {
-                (mode.direction, mode.place) = if *off { (one, zero) } else { (zero, row.place) };
+                (mode.direction, mode.place) = match (*off, moves) {
+                    (true, _) => (one, zero),
+                    (false, true) => (row.rate.sign(), zero),
+                    (false, false) => (zero, row.place),
+                };
             }
             mode.since = self.t;
         }

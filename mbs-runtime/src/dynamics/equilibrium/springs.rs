@@ -5,7 +5,7 @@
 //! close, however soft the springs are.
 //! Source: Alart & Curnier 1991.
 
-use crate::dynamics::formulations::set_valued::{column, is_off, limit, sticks};
+use crate::dynamics::formulations::set_valued::{column, is_off, limit, no_speed, sticks};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::Model;
 use crate::mechanism::dynamic::Dynamic;
@@ -24,7 +24,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         if const { S::SET_VALUED.is_empty() } || self.springs.is_none() {
             return *self.parameters;
         }
-        let sprung = Sprung { model: self, parameters: *self.parameters };
+        let sprung = Sprung { model: self, qd: &y.qd, parameters: *self.parameters };
         self.mechanism.set_valued_rows(self.parameters, position, &y.qd, &y.states, lambda, sprung)
     }
 
@@ -58,6 +58,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 /// Modes and forces by the springs.
 struct Sprung<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
+    qd: &'a [R; N],
     parameters: S::Parameters,
 }
 
@@ -89,6 +90,9 @@ where
             let force = pull(row, mode);
             (mode.direction, mode.force) = if *off {
                 (one, zero)
+            } else if no_speed(row, self.qd, self.model.metric).less(row.rate.abs()) {
+                // On a belt it slides, however long it rests.
+                (row.rate.sign(), zero)
             } else if force.abs() < *limit {
                 (zero, force)
             } else {

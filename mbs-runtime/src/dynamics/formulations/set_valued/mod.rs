@@ -25,7 +25,7 @@ use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::set_valued::{SetValuedMode, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, set_valued};
+use crate::tolerances::{forces, motion, set_valued};
 
 /// Corrections of one position: the first leaves the square of the drift of a step.
 const MOST_CORRECTIONS: u32 = 4;
@@ -211,6 +211,17 @@ pub(crate) fn no_rate<R: Real, const N: usize, const M: usize>(
         terms = terms + motion::AT_REST.of::<R>() * (*entry * *scale).abs();
     }
     motion::NO_VALUE.of::<R>() * terms
+}
+
+/// Speed (m/s) of a row that is none: of a state that [rests](forces::AT_REST), or rounding.
+pub(crate) fn no_speed<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    qd: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> R {
+    let scales = row.gradient.iter().zip(&metric.coordinates);
+    let reach = scales.fold(R::constant(0.0), |sum, (entry, scale)| sum + (*entry * *scale).abs());
+    no_rate(row, qd, metric).max(forces::AT_REST.of::<R>() * reach)
 }
 
 /// The force (N) on the coordinates by a unit force of the row at `index`: its gradient, and of a contact the frictions that slide on it.
