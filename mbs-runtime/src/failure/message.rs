@@ -274,8 +274,9 @@ impl fmt::Display for Failure {
             ),
             FailureKind::EventOfMotion { event } => write!(
                 f,
-                "event `{}` (line {}) sets values that are known in a motion by `Explicit` alone: take it, with `Radau5`, or `DormandPrince8` where \
-                 the motion is not stiff, or a scene without the event",
+                "event `{}` (line {}) sets values that belong to a motion, which this method or analysis does not follow, or that change from \
+                 rest to rest: follow the motion by `Explicit`, with `Radau5`, or `DormandPrince8` where it is not stiff, or take a scene \
+                 without the event",
                 event.name, event.line
             ),
             FailureKind::StickingUndecided { row } => write!(

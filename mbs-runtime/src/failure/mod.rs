@@ -210,7 +210,7 @@ pub enum FailureKind {
         /// The friction or contact.
         row: &'static Entry,
     },
-    /// Values that an event sets are known within a motion by [`Explicit`](crate::dynamics::Explicit) alone.
+    /// Values that an event sets belong to a motion that the method or analysis does not follow, or change from rest to rest.
     EventOfMotion {
         /// The first event of the text.
         event: &'static Entry,

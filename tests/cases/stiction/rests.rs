@@ -96,6 +96,65 @@ mechanism! {
     out force: N = force(rub);
 }
 
+mechanism! {
+    /// Three blocks in a row, with springs between them, on a rough floor.
+    mechanism Row;
+    coord x: [m; 3] = [0, 1, 2];
+    for i in 0..3 {
+        body block { mass: 1, com: [x[i], 0] }
+        friction rub { along: x[i], normal: 9.81N, coefficient: 0.2, sticks: 0.3 }
+    }
+    for i in 0..2 { tsda spring { from: [x[i], 0], to: [x[i+1], 0], stiffness: 30, length: 1 } }
+    out forces: [N; 3] = [force(rub[0]), force(rub[1]), force(rub[2])];
+}
+
+#[test]
+fn frictions_of_a_row_slide_one_after_the_other() {
+    // The last block slides to where 0.2·9.81 N hold its spring; what the others bear is below 0.3·9.81 N.
+    let (found, forces) = rest(&Row::default(), &[0.0, 1.05, 2.3]).expect("it rests");
+    let last = 0.2 * G / 30.0;
+    [0.0, 1.05, 2.05 + last].iter().zip(&found.q).for_each(|(expected, q)| near(*q, *expected));
+    // Each friction bears the difference of the springs beside it.
+    [-1.5, 1.5 - 0.2 * G, 0.2 * G].iter().zip(&forces).for_each(|(expected, force)| near(*force, *expected));
+    assert!(found.held == [true; 3] && !found.shared, "{found:?}");
+    let single = equilibrium(&Row::<f32>::default(), 0.0, &[0.0, 1.05, 2.3]).expect("it rests");
+    assert!((f64::from(single.q[2]) - 2.05 - last).abs() < 1e-5, "{single:?}");
+}
+
+mechanism! {
+    /// A pendulum with friction in its pin, whose force is a multiplier.
+    mechanism Pendulum;
+    coord phi: rad = 0;
+    coord P: [m; 2] = [0, -1];
+    constraint rod { P == 1m*[sin(phi), -cos(phi)]; }
+    body bob { mass: 1kg, com: P }
+    gravity weight { acceleration: [0, -9.81] }
+    friction pin { along: 20mm*phi, normal: hypot(lambda(rod[0]), lambda(rod[1])), coefficient: 0.8, sticks: 1 }
+    out force: N = force(pin);
+}
+
+#[test]
+fn a_pendulum_hangs_aside_within_the_friction_of_its_pin() {
+    let at = |phi: f64| [phi, phi.sin(), -phi.cos()];
+    let (found, [force]) = rest(&Pendulum::default(), &at(0.01)).expect("it sticks");
+    near(found.q[0], 0.01);
+    near(force * 0.02, G * 0.01_f64.sin());
+    let (found, [force]) = rest(&Pendulum::default(), &at(0.4)).expect("it slides down");
+    // 9.81 sin φ = 0.02 · 0.8 · 9.81
+    near(found.q[0], 0.016_f64.asin());
+    near(force, 0.8 * G);
+}
+
+#[test]
+fn a_disk_rolls_to_its_rest_from_anywhere() {
+    for start in [0.01, 0.8] {
+        let (found, _, _) =
+            equilibrium_with_modes(&Disk::default(), 0.0, &[start, 0.3, 0.0]).expect("it rests");
+        near(found.q[0], 0.0);
+        near(found.q[2], 10.0 * start);
+    }
+}
+
 #[test]
 fn a_block_on_a_slope_rests_below_the_limit_alone() {
     let (sine, cosine) = 30.0_f64.to_radians().sin_cos();
@@ -136,11 +195,11 @@ fn a_ladder_stands_within_the_cone_of_its_friction() {
     near(wall, 10.0 * G / (2.0 * angle.tan()));
     near(drag.abs(), wall);
     assert!(found.held.contains(&true) && !found.shared, "{found:?}");
-    // Below atan(1/(2 μ)) = 45° it slips. What is found then leans on nothing: it lies, or stands upright.
+    // Below atan(1/(2 μ)) = 45° it slips. What is found then leans on nothing: it lies, stands, or hangs from its foot.
     let low = 44.0_f64.to_radians();
     let fallen = rest(&Ladder::default(), &at(low));
     if let Ok((found, [_, wall, drag])) = fallen {
-        let upright = (found.q[1] - 1.0).abs() < 1e-9;
+        let upright = (found.q[1].abs() - 1.0).abs() < 1e-9;
         assert!(upright || found.q[1].abs() < 1e-9, "{found:?}");
         assert!(wall.abs() < 1e-6 && drag.abs() < 1e-6, "{wall} {drag}");
     }

@@ -13,8 +13,11 @@ use crate::mechanism::set_valued::{SetValuedMode, SetValuedRow, WithSetValuedRow
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, set_valued};
 
-/// Searches with the forces of the one before.
-const MOST_SEARCHES: u32 = 40;
+/// Searches with the forces of the one before, each row and once more.
+const MOST_SEARCHES: usize = 16;
+
+/// Searches after which frictions are judged by their limits even where springs still have a length: what sticks may contradict itself.
+const PATIENCE: u32 = 6;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Parameters with the values that events set at a start, where nothing but the state is known.
@@ -163,17 +166,28 @@ fn search_with_springs<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
     parameters =
         model.mechanism.set_valued_rows(&parameters, &position, &start.qd, &start.states, &lambda, starting);
     let springs = Some(model.size_of_springs(&position, start));
-    for _ in 0..MOST_SEARCHES {
+    let mut searches = 0;
+    for _ in 0..MOST_SEARCHES * (1 + S::SET_VALUED.len()) {
         let sprung = Model { parameters: &parameters, springs, ..*model };
         let found = search(&sprung, t, y)?;
         y = found.y;
         let (position, lambda) = (model.position(t, &y), &found.rest.lambda);
         let held = sprung.sprung(&position, &y, lambda);
-        let next = Next { model: &sprung, held: &held, y: &y, parameters };
-        let (next, closed) =
+        searches += 1;
+        let next = Next { model: &sprung, held: &held, y: &y, parameters, late: PATIENCE <= searches };
+        let (next, verdict) =
             model.mechanism.set_valued_rows(&held, &position, &y.qd, &y.states, lambda, next);
-        if closed {
-            return settled(&Model { parameters: &held, ..*model }, t, found);
+        match verdict {
+            Verdict::Open => {}
+            Verdict::Changed => searches = 0,
+            Verdict::Rests => {
+                // With the forces known, springs as stiff as the text do: soft directions are told by all of their digits.
+                let softer = springs.map(|springs| springs * set_valued::SOFTNESS.of());
+                let last = Model { parameters: &next, springs: softer, ..*model };
+                let Equilibrium { indifferent, .. } = search(&last, t, y)?.rest;
+                let found = Found { rest: Equilibrium { indifferent, ..found.rest }, ..found };
+                return settled(&Model { parameters: &held, ..*model }, t, found);
+            }
         }
         // From where the springs are gone: beside it a friction would seem to slip.
         model.settle_held(&held, t, &mut y)?;
@@ -222,12 +236,24 @@ fn held_force<R: Real, const N: usize>(
     }
 }
 
-/// Forces for the next search, and `true` where the springs of this one are as long as they should be.
+/// Judgement of a search.
+enum Verdict {
+    /// Springs still have a length.
+    Open,
+    /// A friction has another mode from now on.
+    Changed,
+    /// No spring has a length, and every friction is within its limit.
+    Rests,
+}
+
+/// Forces and modes for the next search.
 struct Next<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     held: &'a S::Parameters,
     y: &'a IntegratorState<R, N, S::States>,
     parameters: S::Parameters,
+    /// `true` if modes are judged whatever the lengths of springs are.
+    late: bool,
 }
 
 impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for Next<'_, S, R, N, M>
@@ -235,18 +261,38 @@ where
     S: Dynamic<R, N, M>,
     R: Real,
 {
-    type Output = (S::Parameters, bool);
+    type Output = (S::Parameters, Verdict);
 
     fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
-        let held = S::set_valued_modes(self.held);
-        let mut closed = true;
-        for ((mode, row), now) in S::set_valued_modes_mut(&mut self.parameters).iter_mut().zip(rows).zip(held)
-        {
+        let (zero, one, held) = (R::constant(0.0), R::constant(1.0), S::set_valued_modes(self.held));
+        let (mut closed, mut worst) = (true, (None, one + forces::AT_REST.of::<R>()));
+        let modes = S::set_valued_modes_mut(&mut self.parameters);
+        for (index, ((mode, row), now)) in modes.iter_mut().zip(rows).zip(held).enumerate() {
             let none = no_gap(row, &self.y.q, self.model.metric);
             closed &= !sticks(now) || (row.place - mode.place).abs() <= none;
             mode.force = held_force(row, now, held);
+            let moves = no_speed(row, &self.y.qd, self.model.metric).less(row.rate.abs());
+            if row.restitution.is_some() || is_off(row, held) || moves {
+                continue;
+            }
+            let (limit, way) = (limit(row, held), (row.place - mode.place) * now.direction);
+            let excess = match sticks(now) {
+                true if limit <= zero => R::constant(f64::INFINITY),
+                true => now.force.abs() / limit,
+                // It would have slid with its force.
+                false if way < -none => one / forces::AT_REST.of(),
+                false => zero,
+            };
+            // Written so that NaN is an excess.
+            if !excess.less(worst.1) {
+                worst = (Some((index, if sticks(now) { -now.force.sign() } else { zero })), excess);
+            }
         }
-        (self.parameters, closed)
+        if let (Some((index, direction)), true) = (worst.0, closed || self.late) {
+            modes.iter_mut().skip(index).take(1).for_each(|mode| mode.direction = direction);
+            return (self.parameters, Verdict::Changed);
+        }
+        (self.parameters, if closed { Verdict::Rests } else { Verdict::Open })
     }
 }
 

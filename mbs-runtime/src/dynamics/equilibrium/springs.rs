@@ -1,11 +1,11 @@
 //! Springs in the place of rigid contacts and of frictions that stick, in a search for a rest.
 //!
-//! A contact with the gap g has the force max(h − κ g, 0), a friction h − κ (s − s₀) as long as that is below μₛ N, and else μ N against the
-//! way from s₀. h is known from the search before: the next one begins with the forces of this one (augmented Lagrangian). So the gaps
+//! A contact with the gap g has the force max(h − κ g, 0), a friction h − κ (s − s₀) where it sticks, and else μ N against the way from s₀.
+//! A friction keeps its mode throughout a search: one that exceeds its limit at the end slides in the next. h is known from the search before: the next one begins with the forces of this one (augmented Lagrangian). So the gaps
 //! close, however soft the springs are.
 //! Source: Alart & Curnier 1991.
 
-use crate::dynamics::formulations::set_valued::{column, is_off, limit, no_speed, sticks};
+use crate::dynamics::formulations::set_valued::{column, is_off, no_speed, sticks};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::Model;
 use crate::mechanism::dynamic::Dynamic;
@@ -79,24 +79,21 @@ where
             let force = pull(row, mode);
             (mode.direction, mode.force) = if zero < force { (zero, force) } else { (one, zero) };
         }
-        let mut known = [(false, zero); K];
-        for (known, row) in known.iter_mut().zip(rows) {
-            *known = (is_off(row, modes), limit(row, modes));
-        }
-        for ((mode, row), (off, limit)) in modes.iter_mut().zip(rows).zip(&known) {
+        let mut off = [false; K];
+        off.iter_mut().zip(rows).for_each(|(off, row)| *off = is_off(row, modes));
+        for ((mode, row), off) in modes.iter_mut().zip(rows).zip(&off) {
             if row.restitution.is_some() {
                 continue;
             }
-            let force = pull(row, mode);
             (mode.direction, mode.force) = if *off {
                 (one, zero)
             } else if no_speed(row, self.qd, self.model.metric).less(row.rate.abs()) {
                 // On a belt it slides, however long it rests.
                 (row.rate.sign(), zero)
-            } else if force.abs() < *limit {
-                (zero, force)
+            } else if sticks(mode) {
+                (zero, pull(row, mode))
             } else {
-                (-force.sign(), zero)
+                (mode.direction, zero)
             };
         }
         self.parameters
