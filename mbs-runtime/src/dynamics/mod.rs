@@ -92,7 +92,9 @@ pub use analyses::linearization::{
 };
 pub use equilibrium::consistent_start::{MovedStart, closed};
 pub use equilibrium::states::states_at_rest;
-pub use equilibrium::{Equilibrium, equilibrium, equilibrium_with_states, undetermined_states};
+pub use equilibrium::{
+    Equilibrium, WithModes, equilibrium, equilibrium_with_modes, equilibrium_with_states, undetermined_states,
+};
 pub use first_order_form::equations::Equations;
 pub use first_order_form::explicit::Explicit;
 pub use first_order_form::phases::Phased;

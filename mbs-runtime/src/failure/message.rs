@@ -260,15 +260,23 @@ impl fmt::Display for Failure {
             }
             FailureKind::SetValuedForce { row } => write!(
                 f,
-                "`{}` (line {}) is a friction that sticks or a rigid contact, and has no slopes at rest, which rests, small motions and \
-                 implicit methods need: follow the motion by an explicit method, as `DormandPrince8`, or take a smooth law, `speed` in place of \
-                 `sticks`, a contact with `stiffness`",
+                "`{}` (line {}) is a friction that sticks or a rigid contact, and this method or analysis does not know its force or its slope: \
+                 follow the motion by `Explicit` with `Radau5`, or `DormandPrince8` where it is not stiff, or take a smooth law, `speed` in \
+                 place of `sticks`, a contact with `stiffness`",
+                row.name, row.line
+            ),
+            FailureKind::SetValuedEdge { row } => write!(
+                f,
+                "`{}` (line {}) is between two modes at t = {time} s: a contact that touches without a force, or a friction at its limit, so \
+                 small motions have no linear equation; take a state beside it, or a smooth law, `speed` in place of `sticks`, a contact with \
+                 `stiffness`",
                 row.name, row.line
             ),
             FailureKind::EventOfMotion { event } => write!(
                 f,
-                "event `{}` (line {}) sets values that are known in a motion by an explicit method alone: take one, as `DormandPrince8`, or a \
-                 scene without the event",
+                "event `{}` (line {}) sets values that belong to a motion, which this method or analysis does not follow, or that change from \
+                 rest to rest: follow the motion by `Explicit`, with `Radau5`, or `DormandPrince8` where it is not stiff, or take a scene \
+                 without the event",
                 event.name, event.line
             ),
             FailureKind::StickingUndecided { row } => write!(
@@ -378,6 +386,7 @@ mod tests {
             FailureKind::Ambiguous { row: ROW, solutions: 1, all: false }.at(time),
             FailureKind::SharedNormalForce { row: ROW }.at(time),
             FailureKind::SetValuedForce { row: ROW }.without_time(),
+            FailureKind::SetValuedEdge { row: ROW }.at(time),
             FailureKind::EventOfMotion { event: ROW }.without_time(),
             FailureKind::StickingUndecided { row: ROW }.at(time),
             FailureKind::ContactUndecided { contact: ROW, modes: 0 }.at(time),

@@ -200,12 +200,17 @@ pub enum FailureKind {
         /// A row that shares the force.
         row: &'static Entry,
     },
-    /// Friction with stiction has no slopes at rest, and a rigid contact none where it touches, which the method or analysis needs.
+    /// A friction that sticks or a rigid contact between two modes, where small motions have no linear equation: at its limit, without a force.
+    SetValuedEdge {
+        /// The friction or contact.
+        row: &'static Entry,
+    },
+    /// Friction with stiction or a rigid contact, of which the method or analysis does not know the force or the slope.
     SetValuedForce {
         /// The friction or contact.
         row: &'static Entry,
     },
-    /// Values that an event sets are known within a motion by an explicit method alone.
+    /// Values that an event sets belong to a motion that the method or analysis does not follow, or change from rest to rest.
     EventOfMotion {
         /// The first event of the text.
         event: &'static Entry,
@@ -426,6 +431,7 @@ impl FailureKind {
             | FailureKind::StatesUnknown { .. }
             | FailureKind::NotSmooth { .. }
             | FailureKind::SetValuedForce { .. }
+            | FailureKind::SetValuedEdge { .. }
             | FailureKind::EventOfMotion { .. }
             | FailureKind::Penetration { .. }
             | FailureKind::MechanismMismatch { .. } => FailureSource::Input,

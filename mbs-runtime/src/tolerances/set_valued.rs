@@ -9,6 +9,10 @@ pub(crate) const DEPENDENT: Law = Law::root(1.0);
 /// above it; rounding over it is what the shares of a force have.
 pub(crate) const RAISED: Law = Law::fourth_root(1.0);
 
+/// Largest force or stiffness of a text over that of springs in the place of set-valued rows, in a search for a rest: each search comes nearer by
+/// as much, and a soft direction of the text loses it of the digits that stiffness is told in.
+pub(crate) const SOFTNESS: Law = Law::fourth_root(1.0);
+
 /// Part of the force at which friction slips that counts as rounding, and of the terms of an acceleration that is none: the resolution
 /// of events in time and of the accelerations.
 pub(crate) const EDGE: Law = Law::ulps(1024.0);

@@ -2,7 +2,7 @@
 
 use mbs_runtime::dynamics::{
     DormandPrince5, DormandPrince8, Explicit, GeneralizedAlpha, Projection, RungeKutta4, Simulation,
-    Unstabilized, VelocityTransformation, equilibrium, linearize,
+    Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, FailureKind, Real, mechanism};
 
@@ -341,12 +341,6 @@ fn what_knows_no_history_refuses_events_by_type() {
         Simulation::start_from_text(Lift::default(), implicit, 0.0_f64)
             .map(|run| run.t())
             .expect_err("implicit"),
-    );
-    named(equilibrium(&Lift::default(), 0.0, &[1.0_f64]).map(|_| ()).expect_err("equilibrium"));
-    named(
-        linearize(&Lift::default(), 0.0, (&[1.0_f64], &[0.0], &[0.0]), &[])
-            .map(|_| ())
-            .expect_err("linearize"),
     );
     assert_eq!(Lift::EVENTS_OF_TEXT, ["low"]);
 }

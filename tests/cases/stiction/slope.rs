@@ -1,8 +1,8 @@
 //! A block on a slope, its normal force a multiplier: at rest, sliding, and coming to rest.
 
 use mbs_runtime::dynamics::{
-    Baumgarte, DormandPrince8, Explicit, Formulation, Projection, RungeKutta4, Simulation, Tolerance,
-    Unstabilized, VelocityTransformation,
+    Baumgarte, DormandPrince8, Embedded, Explicit, Formulation, Projection, Radau5, RungeKutta4, Simulation,
+    Tolerance, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::mechanism;
 
@@ -46,6 +46,13 @@ fn below_the_limit_nothing_creeps_in_1000_seconds() {
     let mut run = Simulation::start_from_text(Slope::default(), method, 0.0_f64).expect("it starts");
     run.advance_to(1000.0).expect("it rests");
     assert!(run.outputs()[0].value.abs() < 1e-20, "{:?}", run.instant());
+    let implicit = Explicit::new(Radau5, Projection::default());
+    let mut run = Simulation::start_from_text(Slope::default(), implicit, 0.0_f64).expect("it starts");
+    run.advance_to(1000.0).expect("it rests");
+    assert!(run.outputs()[0].value.abs() < 1e-20, "{:?}", run.instant());
+    let mut single = Simulation::start_from_text(Slope::<f32>::default(), implicit, 0.0).expect("it starts");
+    single.advance_to(1000.0).expect("it rests");
+    assert!(single.outputs()[0].value.abs() < 1e-20, "{:?}", single.instant());
     let mut single = Simulation::start_from_text(Slope::<f32>::default(), method, 0.0).expect("it starts");
     single.advance_to(1000.0).expect("it rests");
     assert!(single.outputs()[0].value.abs() < 1e-20, "{:?}", single.instant());
@@ -53,13 +60,17 @@ fn below_the_limit_nothing_creeps_in_1000_seconds() {
 
 #[test]
 fn above_the_limit_it_slides_as_the_closed_form() {
-    let slope = Slope { mus: 0.5, ..Slope::default() };
-    let method = Explicit::new(DormandPrince8, Projection::default());
-    let mut run = Simulation::start_from_text(slope, method, 0.0).expect("it starts");
-    run.advance_to(2.0).expect("it slides");
-    let way = -0.5 * G * (0.5 - 0.3 * 0.75_f64.sqrt()) * 4.0;
-    assert!((run.outputs()[0].value - way).abs() < 1e-10, "{:?} {way}", run.instant());
-    assert!((run.loads()[0] - 0.3 * 2.0 * G * 0.75_f64.sqrt()).abs() < 1e-10);
+    fn slides<I: Embedded>(integrator: I) {
+        let slope = Slope { mus: 0.5, ..Slope::default() };
+        let method = Explicit::new(integrator, Projection::default());
+        let mut run = Simulation::start_from_text(slope, method, 0.0).expect("it starts");
+        run.advance_to(2.0).expect("it slides");
+        let way = -0.5 * G * (0.5 - 0.3 * 0.75_f64.sqrt()) * 4.0;
+        assert!((run.outputs()[0].value - way).abs() < 1e-10, "{:?} {way}", run.instant());
+        assert!((run.loads()[0] - 0.3 * 2.0 * G * 0.75_f64.sqrt()).abs() < 1e-10);
+    }
+    slides(DormandPrince8);
+    slides(Radau5);
 }
 
 #[test]

@@ -40,14 +40,17 @@
 //! - `lambda(row)` is the multiplier of that row alone; `reaction(pin, body)` the whole force in a joint, whatever the
 //!   coordinates.
 //! - With [`Stepper`](crate::Stepper) the positions of a whole motion come one after the other, each the guess of the next.
+//! - Events of the text have the values of a run that starts there. Rigid contacts that touch and do not move along the gap are closed where
+//!   their force pushes, frictions whose length does not change stick where they can. A touch that moves, and a force that drives and rows
+//!   leave open, are refused.
 //! - With dependent rows the multipliers are the shortest, and [`Driven::unique`] marks those that are unique. A coordinate that
 //!   the drives leave free follows from the forces.
 
+use crate::dynamics::analyses::modes::Determined;
 use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::unstabilized::{Unstabilized, factorize};
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::states::require_no_states;
-use crate::dynamics::model::method::require_no_stiction;
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::sign_checks::parameter_failure;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
@@ -101,7 +104,8 @@ pub struct Driven<R, const N: usize, const M: usize, L> {
 ///
 /// # Errors
 /// [`NonFinite`](crate::FailureKind::NonFinite), [`Negative`](crate::FailureKind::Negative), [`OffConstraints`](crate::FailureKind::OffConstraints) where the rows contradict each other at this time,
-/// [`SingularMass`](crate::FailureKind::SingularMass); [`StatesUnknown`](crate::FailureKind::StatesUnknown) for a text with first-order states, see [`inverse_with_states`].
+/// [`SingularMass`](crate::FailureKind::SingularMass); [`SetValuedForce`](crate::FailureKind::SetValuedForce) where the mode of a rigid
+/// contact or friction that sticks, or its force, does not follow from the motion; [`StatesUnknown`](crate::FailureKind::StatesUnknown) for a text with first-order states, see [`inverse_with_states`].
 pub fn inverse<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
@@ -125,8 +129,7 @@ pub fn inverse_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
     }
-    require_no_stiction::<S, R, N, M>()?;
-    let parameters = mechanism.parameters();
+    let mut parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model = Model::of_states(mechanism, &parameters, &metric);
     let (zero, mut counts) = (R::constant(0.0), Counts::default());
@@ -138,7 +141,17 @@ pub fn inverse_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     let factors = factorize(&model, t, &position, &mut counts)?;
     let moving = mechanism.phi_t(&parameters, &position).each(|rate| -rate);
     y.qd = factors.solve(&[zero; N], &moving).0;
-    let solved: Solved<R, N, M, S::States> = Unstabilized.solve(&model, t, &y, &[zero; M], &mut counts)?;
+    let solved: Solved<R, N, M, S::States> = if const { S::HAS_MODES } {
+        let (modes, solved) = model.judged(t, &y)?;
+        parameters = modes;
+        let model = Model::of_states(mechanism, &parameters, &metric);
+        let determined = Determined { model: &model, t, y: &y };
+        let lambda = &solved.lambda;
+        mechanism.set_valued_rows(&parameters, &position, &y.qd, &y.states, lambda, determined)?;
+        solved
+    } else {
+        Unstabilized.solve(&model, t, &y, &[zero; M], &mut counts)?
+    };
     let (qd, qdd, lambda) = (y.qd, solved.rate.qd, solved.lambda);
     let motion = DynamicState { qd: &qd, qdd: &qdd, lambda: &lambda, states: &y.states };
     let loads = mechanism.loads(&parameters, &position, &motion);

@@ -1,5 +1,6 @@
 //! Small motions about a state: M̄ s̈ + C̄ ṡ + K̄ s = 0 in as many coordinates s as there are degrees of freedom.
 
+use crate::dynamics::analyses::modes::FreeOfHeld;
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::formulations::variation::{FreeMotion, Variation};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -8,7 +9,7 @@ use crate::dynamics::linear_systems::states::require_no_states;
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
 use crate::dynamics::model::instant::Instant;
-use crate::dynamics::model::method::require_slopes;
+use crate::dynamics::model::method::require_smooth;
 use crate::dynamics::model::metric::Metric;
 use crate::failure::Failure;
 use crate::linear_algebra::vectors::{dot, times};
@@ -48,6 +49,8 @@ pub struct Linearization<R, const N: usize> {
 /// Small motions about the state `q`, `qd`, `qdd` (N each) with multipliers `lambda` (M) at time `t` (s), on the
 /// constraints. About a state that moves they are in the coordinates that determine the others best.
 ///
+/// Rigid contacts that push and frictions that stick hold: they take motions away. Events have the values of a run that starts there.
+///
 /// Source: Negrut & Ortiz 2006 for the reduction to the null space of Φ_q.
 ///
 /// ```
@@ -73,7 +76,10 @@ pub struct Linearization<R, const N: usize> {
 ///
 /// # Errors
 /// [`NonFinite`](crate::FailureKind::NonFinite); [`SingularMass`](crate::FailureKind::SingularMass) where a free motion moves no mass; [`StatesUnknown`](crate::FailureKind::StatesUnknown) for a text with
-/// first-order states, see [`linearize_with_states`]; [`NotSmooth`](crate::FailureKind::NotSmooth).
+/// first-order states, see [`linearize_with_states`]; [`NotSmooth`](crate::FailureKind::NotSmooth);
+/// [`SetValuedEdge`](crate::FailureKind::SetValuedEdge) where a rigid contact touches without a force or a friction is at its limit;
+/// [`SetValuedForce`](crate::FailureKind::SetValuedForce) about a state that moves while one holds, and
+/// [`EventOfMotion`](crate::FailureKind::EventOfMotion), where the state is not one of the modes that it would start in.
 pub fn linearize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
@@ -130,12 +136,21 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     lambda: &[R; M],
     independent: &[u16],
 ) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
-    require_slopes::<S, R, N, M>()?;
-    let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
+    require_smooth::<S, R, N, M>()?;
+    let (zero, mut parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, &y.q);
     let model = Model::of_states(mechanism, &parameters, &metric);
     model.check(t, y)?;
+    let mut judged = None;
+    if const { S::HAS_MODES } {
+        let (modes, rates) = model.judged(t, y)?;
+        (parameters, judged) = (modes, Some(rates));
+    }
+    let model = Model::of_states(mechanism, &parameters, &metric);
     let position = model.position(t, y);
+    if judged.is_some() {
+        model.require_modes_of(t, y, (qdd, lambda))?;
+    }
     let tangent = Tangent::of(&model, &position, y, qdd, lambda);
     let slopes = mechanism.state_slopes(&parameters, &position, &y.qd, &y.states, lambda);
     let phi_q = mechanism.phi_q(&parameters, &position);
@@ -145,13 +160,19 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         let rates = rates.iter().zip(&metric.coordinates);
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
     };
+    let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
+    if let Some(rates) = &judged.filter(|_| !S::SET_VALUED.is_empty()) {
+        let free = FreeOfHeld { model: &model, t, y, rates, basis: (basis, freedom) };
+        (basis, freedom) =
+            mechanism.set_valued_rows(&parameters, &position, &y.qd, &y.states, lambda, free)?;
+    }
     let slow = scaled(&y.qd) <= forces::AT_REST.of();
     if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(&model, t, y, (&position, qdd), lambda)?) {
+        model.require_nothing_held(t)?;
         let variation = Variation::of(&model, (t, y, qdd), &position, independent)?;
         let (linear, rates) = moving(&tangent, &variation);
         return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &rates))));
     }
-    let (freedom, basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
     let reduced = |matrix: &[[R; N]; N]| reduced(&basis, &basis.map(|right| times(matrix, &right)), freedom);
     let linear = Linearization {
         freedom,

@@ -3,3 +3,4 @@
 pub(crate) mod determinacy;
 pub(crate) mod inverse;
 pub(crate) mod linearization;
+mod modes;

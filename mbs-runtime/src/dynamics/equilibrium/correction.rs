@@ -140,7 +140,9 @@ fn regular<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
 ) -> Result<Option<Step<R, N, M>>, Failure> {
-    let (mechanism, parameters, position) = (model.mechanism, model.parameters, model.position(t, y));
+    let position = model.position(t, y);
+    let model = &Model { parameters: &model.sprung(&position, y, lambda), ..*model };
+    let (mechanism, parameters) = (model.mechanism, model.parameters);
     let (tangent, integrals) = Tangent::at_rest(model, &position, y, lambda);
     if integrals.is_some() {
         return Ok(None);
@@ -188,6 +190,7 @@ fn answer_to_imbalance<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
     mut of: impl FnMut(&[R; N], &[R; M]) -> Answer<R, N, M>,
 ) -> Result<Answer<R, N, M>, Failure> {
     let position = model.position(t, y);
+    let model = &Model { parameters: &model.sprung(&position, y, lambda), ..*model };
     let phi = model.mechanism.phi(model.parameters, &position);
     let imbalance = match S::FORCE_USES_MULTIPLIERS {
         false => model.imbalance(&position, y, &[R::constant(0.0); N], (lambda, lambda)),

@@ -138,6 +138,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
         let model = self.model;
         let there = FreeStiffness::of(model, self.t, y, lambda).ok()?;
         let position = model.position(self.t, y);
+        let model = &Model { parameters: &model.sprung(&position, y, lambda), ..*model };
         let imbalance = model.imbalance(&position, y, &[R::constant(0.0); N], (lambda, lambda));
         let answer = there.answer(&imbalance, &model.mechanism.phi(model.parameters, &position));
         y.q = y.q.plus(-share, &[1.0], [&answer.step]);
@@ -157,7 +158,13 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
         let zero = R::constant(0.0);
         let Some((y, there)) = self.moved(motion) else { return };
         let position = self.model.position(self.t, &y);
-        let imbalance = self.model.imbalance(&position, &y, &[zero; N], (self.lambda, self.lambda));
+        let parameters = &self.model.sprung(&position, &y, self.lambda);
+        let imbalance = Model { parameters, ..*self.model }.imbalance(
+            &position,
+            &y,
+            &[zero; N],
+            (self.lambda, self.lambda),
+        );
         let scales = &self.model.metric.coordinates;
         let pull = there.answer(&imbalance, &[zero; M]).pull;
         let mut work = zero;

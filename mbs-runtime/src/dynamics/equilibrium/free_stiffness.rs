@@ -56,6 +56,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         lambda: &[R; M],
     ) -> Result<Self, Failure> {
         let (zero, position) = (R::constant(0.0), model.position(t, y));
+        let model = &Model { parameters: &model.sprung(&position, y, lambda), ..*model };
         let stiffness = Tangent::at_rest(model, &position, y, lambda).0.stiffness;
         let factors = model.free_factors(&position, t)?;
         let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, lambda);

@@ -6,6 +6,8 @@ pub(crate) mod correction;
 pub(crate) mod dead_centre;
 pub(crate) mod free_play;
 pub(crate) mod free_stiffness;
+pub(crate) mod modes;
+pub(crate) mod springs;
 pub(crate) mod states;
 pub(crate) mod with_integrators;
 
@@ -13,14 +15,16 @@ use crate::dynamics::equilibrium::approach::approach;
 use crate::dynamics::equilibrium::correction::{correction, damped, largest, saddle};
 use crate::dynamics::equilibrium::free_play::with_play;
 use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness};
+use crate::dynamics::equilibrium::modes::search_with_modes;
 use crate::dynamics::equilibrium::states::resting_anywhere;
 use crate::dynamics::implicit::iteration::MOST_ITERATIONS;
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::Model;
-use crate::dynamics::model::method::require_slopes_at_rest;
+use crate::dynamics::model::method::{require_slopes_at_rest, require_smooth_at_rest};
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::sign_checks::parameter_failure;
 use crate::failure::{Failure, FailureKind, checks};
+use crate::mechanism::Mechanism;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::forces;
@@ -41,6 +45,10 @@ pub struct Equilibrium<R, const N: usize, const M: usize> {
     /// `true` for each coordinate that may move without any force answering, to one side at least, as on the edge of a play: N.
     /// They have the values at which the search ended.
     pub indifferent: [bool; N],
+    /// `true` for each coordinate that friction which sticks holds, as far as its forces reach: N. Other values about it are rests too.
+    pub held: [bool; N],
+    /// `true` if forces of rigid contacts and of frictions that stick are one choice of many.
+    pub shared: bool,
     /// Iterations spent.
     pub iterations: u32,
 }
@@ -94,7 +102,20 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     t: R,
     q: &[R; N],
 ) -> Result<(Equilibrium<R, N, M>, S::States), Failure> {
-    require_slopes_at_rest::<S, R, N, M>()?;
+    equilibrium_with_modes(mechanism, t, q).map(|(found, states, _)| (found, states))
+}
+
+/// [`equilibrium_with_states`] and the parameters of the rest: with the values of events, and with the modes and forces of rigid contacts and of
+/// frictions that stick. So [`loads`](Dynamic::loads) of them are those of the rest.
+///
+/// # Errors
+/// As [`equilibrium`].
+pub fn equilibrium_with_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: R,
+    q: &[R; N],
+) -> Result<WithModes<S, R, N, M>, Failure> {
+    require_smooth_at_rest::<S, R, N, M>()?;
     if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
     }
@@ -102,22 +123,45 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model = Model::of_states(mechanism, &parameters, &metric);
     let states = mechanism.start_states(&parameters);
-    let mut y = IntegratorState { q: *q, qd: [R::constant(0.0); N], states, work: R::constant(0.0) };
+    let y = IntegratorState { q: *q, qd: [R::constant(0.0); N], states, work: R::constant(0.0) };
     model.check(t, &y)?;
-    let mut found = balanced(&model, t, &mut y);
+    let Found { rest, y, parameters } =
+        if const { S::HAS_MODES } { search_with_modes(&model, t, y)? } else { search(&model, t, y)? };
+    Ok((rest, y.states, parameters))
+}
+
+/// A rest, its first-order states, and its parameters with modes and forces.
+pub type WithModes<S, R, const N: usize, const M: usize> =
+    (Equilibrium<R, N, M>, <S as Dynamic<R, N, M>>::States, <S as Mechanism<R, N, M>>::Parameters);
+
+/// A rest with its state and parameters.
+struct Found<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    rest: Equilibrium<R, N, M>,
+    y: IntegratorState<R, N, S::States>,
+    parameters: S::Parameters,
+}
+
+/// The rest that a search from `y` comes to.
+fn search<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    mut y: IntegratorState<R, N, S::States>,
+) -> Result<Found<S, R, N, M>, Failure> {
+    let (start, parameters) = (y, *model.parameters);
+    let mut found = balanced(model, t, &mut y);
     if matches!(found, Err(Failure { kind: FailureKind::NoStateEquilibrium { .. }, .. })) {
-        y = IntegratorState { q: perturb(q, &metric.coordinates), states, ..y };
-        found = balanced(&model, t, &mut y);
+        y = IntegratorState { q: perturb(&start.q, &model.metric.coordinates), states: start.states, ..y };
+        found = balanced(model, t, &mut y);
     }
-    if let Some(found) = found? {
-        return Ok((found, y.states));
+    if let Some(rest) = found? {
+        return Ok(Found { rest, y, parameters });
     }
     model.check(t, &y)?;
-    require_no_integral(&model, t, &y)?;
-    approach(&model, t, &mut y)?;
-    match balanced(&model, t, &mut y)? {
-        Some(found) => Ok((found, y.states)),
-        None => Err(model.unbalanced(&answer(&model, t, &y)?.step, t, MOST_ITERATIONS)),
+    require_no_integral(model, t, &y)?;
+    approach(model, t, &mut y)?;
+    match balanced(model, t, &mut y)? {
+        Some(rest) => Ok(Found { rest, y, parameters }),
+        None => Err(model.unbalanced(&answer(model, t, &y)?.step, t, MOST_ITERATIONS)),
     }
 }
 
@@ -128,7 +172,8 @@ fn require_no_integral<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
     t: R,
     y: &IntegratorState<R, N, S::States>,
 ) -> Result<(), Failure> {
-    let last = correction(model, t, y, &balancing(model, t, y)?.0)?;
+    let none = [R::constant(0.0); M];
+    let last = correction(model, t, y, &balancing(model, t, y, &none)?.0)?;
     if last.integrated { Err(model.unbalanced(&last.step, t, MOST_ITERATIONS)) } else { Ok(()) }
 }
 
@@ -177,7 +222,7 @@ fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     y: &mut IntegratorState<R, N, S::States>,
 ) -> Result<Option<Equilibrium<R, N, M>>, Failure> {
     model.settle_states(t, y, &[R::constant(0.0); M])?;
-    let (mut lambda, _) = balancing(model, t, y)?;
+    let (mut lambda, _) = balancing(model, t, y, &[R::constant(0.0); M])?;
     let mut last = R::constant(f64::MAX);
     for iterations in 1..=MOST_ITERATIONS {
         if let Some(integrated) = stands_after_step(model, t, (y, &mut lambda), &mut last)? {
@@ -221,7 +266,7 @@ fn found_at<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     integrated: bool,
 ) -> Result<Option<Equilibrium<R, N, M>>, Failure> {
     // Rows that follow from others do so at the end alone: on the way their multipliers may have grown against each other.
-    let (shortest, unique) = balancing(model, t, y)?;
+    let (shortest, unique) = balancing(model, t, y, lambda)?;
     // Off the rows, dependent ones hold every motion: a step that ends there says nothing of the forces.
     if unique.contains(&false) && !integrated && !is_balanced(model, t, y)? {
         return Ok(None);
@@ -231,7 +276,8 @@ fn found_at<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let held = if S::FORCE_USES_MULTIPLIERS { lambda } else { shortest };
     let indifferent = unanswered_coordinates(model, t, y, (&lambda, &held))?;
     let indifferent = with_play(model, t, y, &held, indifferent)?;
-    Ok(Some(Equilibrium { q: y.q, lambda, unique, indifferent, iterations: 0 }))
+    let (held, shared) = ([false; N], false);
+    Ok(Some(Equilibrium { q: y.q, lambda, unique, indifferent, held, shared, iterations: 0 }))
 }
 
 /// `true` for each coordinate (N) that moves without any force answering at the equilibrium `y` with multipliers `lambda` (M), of
@@ -271,8 +317,9 @@ pub(crate) fn answer<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
     y: &IntegratorState<R, N, S::States>,
 ) -> Result<Answer<R, N, M>, Failure> {
     let zero = R::constant(0.0);
-    let (lambda, _) = balancing(model, t, y)?;
+    let (lambda, _) = balancing(model, t, y, &[zero; M])?;
     let (position, phi, free) = (model.position(t, y), [zero; M], FreeStiffness::of(model, t, y, &lambda)?);
+    let model = &Model { parameters: &model.sprung(&position, y, &lambda), ..*model };
     let answer = |imbalance: &[R; N], phi: &[R; M]| free.answer(imbalance, phi);
     let imbalance = match S::FORCE_USES_MULTIPLIERS {
         false => model.imbalance(&position, y, &[zero; N], (&lambda, &lambda)),
@@ -301,14 +348,16 @@ pub(crate) fn no_equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const
 }
 
 /// The shortest multipliers (M) that come nearest to balancing the forces, and which of them are the only ones (M).
-/// Without multipliers the rows give no stiffness.
+/// Without multipliers the rows give no stiffness; `known` (M): those that frictions which stick are judged by.
 fn balancing<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &IntegratorState<R, N, S::States>,
+    known: &[R; M],
 ) -> Result<([R; M], [bool; M]), Failure> {
     let zero = R::constant(0.0);
     let position = model.position(t, y);
+    let model = &Model { parameters: &model.sprung(&position, y, known), ..*model };
     let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, &[zero; M]);
     let factors = model.free_factors(&position, t)?;
     Ok((factors.solve(&force, &[zero; M]).1, factors.unique_multipliers()))

@@ -164,6 +164,7 @@ where
         S: Dynamic<R, N, M, States = Z>,
     {
         let (zero, position) = (R::constant(0.0), model.position(t, y));
+        let model = &Model { parameters: &model.sprung(&position, y, lambda), ..*model };
         let (mechanism, parameters) = (model.mechanism, model.parameters);
         let mut sum = zero;
         let mut add = |value: R, scale: R| {

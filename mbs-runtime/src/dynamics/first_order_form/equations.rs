@@ -2,14 +2,13 @@
 
 use crate::dynamics::first_order_form::phases::{ORDER_OF_INTEGRALS, Phased, advanced};
 use crate::dynamics::first_order_form::radau;
-use crate::dynamics::first_order_form::radau::slopes::Slopes;
 use crate::dynamics::first_order_form::radau::{Radau5, newton};
 use crate::dynamics::formulations::singular::passage::Passage;
 use crate::dynamics::integrators::embedded::Embedded;
 use crate::dynamics::integrators::equation::{Collocated, Collocation, Equation, ErrorNorm};
 use crate::dynamics::integrators::event::{Dense, Scrutiny};
 use crate::dynamics::integrators::step_control::{Adaptive, Point};
-use crate::dynamics::integrators::vector::{IntegratorState, Vector};
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::{Tolerance, worse};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
@@ -247,19 +246,6 @@ where
                 *lambda = solved.lambda;
             }
             solved
-        })
-    }
-
-    /// Slopes of accelerations and of the rates of first-order states about the beginning of a step, of positions in its middle: stiff
-    /// directions turn with the mechanism, and the iteration gains a fifth.
-    pub(crate) fn slopes(
-        &mut self,
-        step: &Collocation<'_, R, Moving<S, R, N, M>>,
-    ) -> Result<Slopes<S, R, N, M>, Failure> {
-        let mut middle = step.y.y;
-        middle.q = middle.q.plus(step.h, &[0.5], [&middle.qd]);
-        self.at(step.t, &step.y.phases, |model, _, lambda, _| {
-            Slopes::of(model, (step.t, &middle), &step.rate.y.qd, lambda)
         })
     }
 

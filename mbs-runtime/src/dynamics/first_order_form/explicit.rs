@@ -9,7 +9,7 @@ use crate::dynamics::integrators::step_control::Point;
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
-use crate::dynamics::model::method::{Method, require_slopes};
+use crate::dynamics::model::method::{Method, require_smooth};
 use crate::dynamics::model::{Counts, Formulation, MethodWarning, Model, Solved};
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
@@ -90,7 +90,7 @@ where
 
     fn require_suitable(&self) -> Result<(), Failure> {
         if self.integrator.uses_slopes() {
-            require_slopes::<S, R, N, M>()?;
+            require_smooth::<S, R, N, M>()?;
         }
         self.formulation.require_suitable()
     }

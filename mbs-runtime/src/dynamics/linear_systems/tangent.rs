@@ -42,6 +42,7 @@ impl<R: Real, const N: usize> Tangent<R, N> {
     ) -> (Self, IntegralsOf<S, R, N, M>) {
         let mut tangent = Tangent::of(model, position, y, &[R::constant(0.0); N], lambda);
         let integrals = model.add_following_states(position, y, lambda, &mut tangent.stiffness);
+        model.add_springs(position, y, lambda, &mut tangent.stiffness);
         (tangent, integrals)
     }
 

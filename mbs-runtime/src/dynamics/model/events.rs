@@ -156,7 +156,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     /// Before: `next` is as the model's parameters. After: the first event that changes has changed there; its index.
-    fn change(
+    pub(crate) fn change(
         &self,
         (t, y): (R, &IntegratorState<R, N, S::States>),
         solved: &Solved<R, N, M, S::States>,

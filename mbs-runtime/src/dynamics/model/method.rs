@@ -11,11 +11,20 @@ use crate::scalar::number::Real;
 /// Fails where a text has functions that are not smooth enough for a [`Tangent`].
 ///
 /// # Errors
+/// [`FailureKind::NotSmooth`].
+pub(crate) fn require_smooth<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
+-> Result<(), Failure> {
+    S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
+}
+
+/// [`require_smooth`] of a method or analysis that knows no modes.
+///
+/// # Errors
 /// [`FailureKind::NotSmooth`], [`FailureKind::SetValuedForce`], [`FailureKind::EventOfMotion`].
 pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
     require_no_stiction::<S, R, N, M>()?;
-    S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
+    require_smooth::<S, R, N, M>()
 }
 
 /// Fails where a text has friction with stiction or events: outside a motion that knows whether it sticks or slides, and what has begun.
@@ -34,10 +43,19 @@ pub(crate) fn require_no_stiction<S: Dynamic<R, N, M>, R: Real, const N: usize, 
 /// [`require_slopes`] of a position of rest: ∂Q/∂q̇ has no part in it.
 ///
 /// # Errors
-/// [`FailureKind::NotSmooth`].
+/// [`FailureKind::NotSmooth`], [`FailureKind::SetValuedForce`], [`FailureKind::EventOfMotion`].
 pub(crate) fn require_slopes_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
     require_no_stiction::<S, R, N, M>()?;
+    require_smooth_at_rest::<S, R, N, M>()
+}
+
+/// [`require_smooth`] of a position of rest: ∂Q/∂q̇ has no part in it.
+///
+/// # Errors
+/// [`FailureKind::NotSmooth`].
+pub(crate) fn require_smooth_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
+-> Result<(), Failure> {
     let missing = S::MISSING_SLOPE.filter(|missing| missing.acts_at_rest);
     missing.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
 }

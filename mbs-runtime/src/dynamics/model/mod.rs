@@ -32,6 +32,8 @@ pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
     pub first_order: bool,
     /// Residual over the row's scale at which a projection of positions ends: 64 ε, or a looser tolerance of the caller.
     pub position_tolerance: R,
+    /// Energy (J) of springs a reference length long, in the place of set-valued forces: in a search for a rest alone.
+    pub springs: Option<R>,
 }
 
 /// Rates of one state, with the multipliers that belong to them.
@@ -199,6 +201,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'a,
             rank_rises: false,
             first_order: false,
             position_tolerance: positions::OF_TERMS.of(),
+            springs: None,
         }
     }
 }
@@ -431,7 +434,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         lambda: &[R; M],
         solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {
-        if const { !S::SET_VALUED.is_empty() } {
+        if const { !S::SET_VALUED.is_empty() } && self.springs.is_none() {
             return self.balanced_in_its_modes(standing, position, at, lambda, solve);
         }
         self.balanced_freely(standing, position, at, lambda, solve)

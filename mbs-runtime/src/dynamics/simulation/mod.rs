@@ -189,15 +189,7 @@ where
         mechanism.start_phases(&q, t);
         let parameters = mechanism.parameters();
         let metric = Metric::next_to(&mechanism, &parameters, t, &q);
-        let mut model = Model {
-            mechanism: &mechanism,
-            parameters: &parameters,
-            metric: &metric,
-            balanced: true,
-            rank_rises: false,
-            first_order: false,
-            position_tolerance: positions::OF_TERMS.of(),
-        };
+        let mut model = Model { balanced: true, ..Model::of_states(&mechanism, &parameters, &metric) };
         let mut counts = Counts::default();
         let states = mechanism.start_states(&parameters);
         let mut y = IntegratorState { q, qd, states, work: R::constant(0.0) };
@@ -385,6 +377,7 @@ where
             rank_rises: self.rank_rises,
             first_order: false,
             position_tolerance: self.position_tolerance,
+            springs: None,
         }
     }
 

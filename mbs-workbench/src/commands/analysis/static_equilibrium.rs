@@ -50,7 +50,7 @@ pub(super) fn rest(dynamics: &dyn AnyDynamics, guesses: &[(usize, f64)]) -> Anal
 }
 
 fn described(rest: &Rest, small: &Result<SmallMotions, String>) -> AnalysisResult {
-    let Rest { motion, indifferent, held } = rest;
+    let Rest { motion, indifferent, rubbed, shared, held } = rest;
     let mut figures = vec![["iterations".to_string(), motion.iterations[0].to_string()]];
     let (course, text) = match small {
         Ok(small) => (course(small.fate()), stability(small.fate())),
@@ -64,6 +64,16 @@ fn described(rest: &Rest, small: &Result<SmallMotions, String>) -> AnalysisResul
             "indifferent coordinates".to_string(),
             format!("{names}: no force answers where they move"),
         ]);
+    }
+    if !rubbed.is_empty() {
+        let names = rubbed.join(", ");
+        let what = format!("{names}: this rest is one of many, as far as the friction reaches");
+        figures.push(["held by friction".to_string(), what]);
+    }
+    if *shared {
+        let what =
+            "contacts or frictions in a ratio that is not determined: their forces are one choice of many";
+        figures.push(["shared forces".to_string(), what.to_string()]);
     }
     if *held {
         let what = "the time, at 0 s: what depends on it stands still as it is then";

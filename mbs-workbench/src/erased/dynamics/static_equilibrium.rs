@@ -2,7 +2,7 @@
 
 use mbs_runtime::dynamics::{
     Counts, Equilibrium, Formulation, IntegratorState, Metric, Model, Unstabilized, closed,
-    equilibrium_with_states,
+    equilibrium_with_modes,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure};
 
@@ -23,6 +23,10 @@ pub struct Rest {
     pub motion: Motion,
     /// Coordinates that may move without a restoring force.
     pub indifferent: Vec<&'static str>,
+    /// Coordinates that frictions hold.
+    pub rubbed: Vec<&'static str>,
+    /// `true` if forces of contacts and frictions are one choice of many.
+    pub shared: bool,
     /// `true` if forces or rows depend on the time, which is held at 0.
     pub held: bool,
 }
@@ -104,8 +108,8 @@ pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Result<Rest, Failure> {
     let mut mechanism = mechanism.clone();
     mechanism.start_phases(q, 0.0);
-    let (found, states) = equilibrium_with_states(&mechanism, 0.0, q)?;
-    let (parameters, none) = (mechanism.parameters(), [0.0; N]);
+    let (found, states, parameters) = equilibrium_with_modes(&mechanism, 0.0, q)?;
+    let none = [0.0; N];
     let position = mechanism.position(&parameters, &found.q, 0.0);
     let outputs = mechanism.outputs(&parameters, &position, &none, &none);
     let scales = Metric::<f64, N, M>::of(&mechanism, &parameters).rows;
@@ -118,7 +122,7 @@ pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         outputs: outputs.as_ref(),
         closure: closure.fold(0.0, f64::max),
         iterations: found.iterations,
-        margin: margin(&mechanism, &found, &states),
+        margin: margin(&mechanism, &parameters, &found, &states),
     });
     let moving = DynamicState { qd: &none, qdd: &none, lambda: &found.lambda, states: &states };
     let loads = mechanism.loads(&parameters, &position, &moving);
@@ -128,9 +132,17 @@ pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     forces.states = states.as_ref().to_vec();
     determined::push(&mut forces, &mechanism, (&parameters, &position), 0.0, &moving)?;
     motion.dynamics = Some(forces);
-    let indifferent = S::COORDINATES.iter().zip(&found.indifferent).filter(|(_, indifferent)| **indifferent);
-    let indifferent = indifferent.map(|(entry, _)| entry.name).collect();
-    Ok(Rest { motion, indifferent, held: depends_on_time(&mechanism, &found, &states) })
+    let named = |marks: &[bool; N]| {
+        let marked = S::COORDINATES.iter().zip(marks).filter(|(_, mark)| **mark);
+        marked.map(|(entry, _)| entry.name).collect()
+    };
+    Ok(Rest {
+        motion,
+        indifferent: named(&found.indifferent),
+        rubbed: named(&found.held),
+        shared: found.shared,
+        held: depends_on_time(&mechanism, &found, &states),
+    })
 }
 
 /// `true` if forces or rows at the equilibrium depend on the time.
@@ -151,12 +163,12 @@ fn depends_on_time<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 /// Margin of Φ_q to a loss of rank; NaN if the masses do not determine the accelerations.
 fn margin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
+    parameters: &S::Parameters,
     found: &Equilibrium<f64, N, M>,
     states: &S::States,
 ) -> f64 {
-    let parameters = mechanism.parameters();
-    let metric = Metric::next_to(mechanism, &parameters, 0.0, &found.q);
-    let model = Model::of_states(mechanism, &parameters, &metric);
+    let metric = Metric::next_to(mechanism, parameters, 0.0, &found.q);
+    let model = Model::of_states(mechanism, parameters, &metric);
     let y = IntegratorState { q: found.q, qd: [0.0; N], states: *states, work: 0.0 };
     let solved = Unstabilized.solve(&model, 0.0, &y, &found.lambda, &mut Counts::default());
     solved.map_or(f64::NAN, |solved| solved.margin)

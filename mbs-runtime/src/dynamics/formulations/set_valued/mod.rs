@@ -25,7 +25,7 @@ use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::set_valued::{SetValuedMode, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, set_valued};
+use crate::tolerances::{forces, motion, set_valued};
 
 /// Corrections of one position: the first leaves the square of the drift of a step.
 const MOST_CORRECTIONS: u32 = 4;
@@ -231,6 +231,17 @@ pub(crate) fn no_rate<R: Real, const N: usize, const M: usize>(
     motion::NO_VALUE.of::<R>() * terms
 }
 
+/// Speed (m/s) of a row that is none: of a state that [rests](forces::AT_REST), or rounding.
+pub(crate) fn no_speed<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    qd: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> R {
+    let scales = row.gradient.iter().zip(&metric.coordinates);
+    let reach = scales.fold(R::constant(0.0), |sum, (entry, scale)| sum + (*entry * *scale).abs());
+    no_rate(row, qd, metric).max(forces::AT_REST.of::<R>() * reach)
+}
+
 /// The force (N) on the coordinates by a unit force of the row at `index`: its gradient, and of a contact the frictions that slide on it.
 #[inline(always)]
 pub(crate) fn column<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize, const K: usize>(
@@ -282,29 +293,64 @@ where
     fn at<const K: usize>(mut self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let zero = R::constant(0.0);
         let modes = S::set_valued_modes(self.model.parameters);
+        let solve = &mut self.solve;
+        let holding = Holding::of::<S>(rows, modes, |force| solve(force, false));
+        let held = |force: &[R; N], whole: bool| {
+            let found = solve(force, whole);
+            let mut right = [zero; K];
+            if whole {
+                right.iter_mut().zip(rows).for_each(|(right, row)| *right = row.gamma);
+            }
+            holding.hold(rows, found, &right)
+        };
+        self.model.balanced_freely(self.standing, self.position, self.at, self.lambda, held)
+    }
+}
+
+/// A system's answers x, λ (N, M) to unit forces of rows that hold, and W of them.
+pub(crate) struct Holding<R: Real, const N: usize, const M: usize, const K: usize> {
+    answers: [([R; N], [R; M]); K],
+    shares: Shares<R, K>,
+}
+
+impl<R: Real, const N: usize, const M: usize, const K: usize> Holding<R, N, M, K> {
+    /// Those of `rows` that hold in `modes` (K), by the answers of `solve` to forces (N).
+    #[inline(always)]
+    pub(crate) fn of<S: Dynamic<R, N, M>>(
+        rows: &[SetValuedRow<R, N>; K],
+        modes: &[SetValuedMode<R>],
+        mut solve: impl FnMut(&[R; N]) -> ([R; N], [R; M]),
+    ) -> Self {
+        let zero = R::constant(0.0);
         let mask: [bool; K] = mask(modes);
         let mut answers = [([zero; N], [zero; M]); K];
         for (index, (answer, _)) in answers.iter_mut().zip(&mask).enumerate().filter(|(_, (_, held))| **held)
         {
-            *answer = (self.solve)(&column::<S, R, N, M, K>(rows, modes, index), false);
+            *answer = solve(&column::<S, R, N, M, K>(rows, modes, index));
         }
         let shares = Shares::of(rows, &mask, |row, column| {
             answers.get(column).map_or(zero, |answer| dot(&row.gradient, &answer.0))
         });
-        let solve = &mut self.solve;
-        let held = |force: &[R; N], whole: bool| {
-            let (mut qdd, mut lambda) = solve(force, whole);
-            let mut open = [zero; K];
-            for (open, row) in open.iter_mut().zip(rows) {
-                *open = if whole { row.gamma } else { zero } - dot(&row.gradient, &qdd);
-            }
-            for (share, answer) in shares.solve(&open).iter().zip(&answers) {
-                qdd = qdd.plus(*share, &[1.0], [&answer.0]);
-                lambda = lambda.plus(*share, &[1.0], [&answer.1]);
-            }
-            (qdd, lambda)
-        };
-        self.model.balanced_freely(self.standing, self.position, self.at, self.lambda, held)
+        Holding { answers, shares }
+    }
+
+    /// A solution x, λ (N, M) of the system with the forces added that make J x = `right` (K) of the rows that hold.
+    #[inline(always)]
+    pub(crate) fn hold(
+        &self,
+        rows: &[SetValuedRow<R, N>; K],
+        (mut x, mut lambda): ([R; N], [R; M]),
+        right: &[R; K],
+    ) -> ([R; N], [R; M]) {
+        let mut open = [R::constant(0.0); K];
+        for ((open, row), right) in open.iter_mut().zip(rows).zip(right) {
+            *open = *right - dot(&row.gradient, &x);
+        }
+        for (share, answer) in self.shares.solve(&open).iter().zip(&self.answers) {
+            x = x.plus(*share, &[1.0], [&answer.0]);
+            lambda = lambda.plus(*share, &[1.0], [&answer.1]);
+        }
+        (x, lambda)
     }
 }
 
