@@ -111,6 +111,9 @@ pub fn judge(
             energy([run, fine], oracle, bounds, &mut found);
         }
     }
+    if let Some(words) = oracle.contradiction() {
+        found.fault(words);
+    }
     found
 }
 

@@ -6,7 +6,9 @@ use std::rc::Rc;
 
 use mbs_codegen::syntax_tree::{Expression, Operation, Operator, SUFFIXES, Unit};
 
+use super::curves::Curve;
 use super::functions;
+use super::laws::Laws;
 use super::number::Number;
 use super::tree::Round;
 
@@ -71,6 +73,10 @@ pub struct Names {
     pub moving: BTreeMap<String, Value>,
     /// `let`s by name; those of loops once a round.
     pub definitions: Rc<BTreeMap<String, Vec<Definition>>>,
+    /// Functions of the caller.
+    pub laws: Rc<Laws>,
+    /// Curves in the order of the text.
+    pub curves: Rc<Vec<Curve>>,
     /// λ of the rows of each constraint and drive.
     pub lambda: BTreeMap<String, Vec<Number>>,
     /// The time.
@@ -96,6 +102,29 @@ impl<'a> Scope<'a> {
         Scope { names, rounds, depth: 0 }
     }
 
+    /// The same names in other rounds.
+    pub fn within<'b>(&self, rounds: &'b [Round]) -> Scope<'b>
+    where
+        'a: 'b,
+    {
+        Scope { names: self.names, rounds, depth: self.depth }
+    }
+
+    /// Functions of the caller.
+    pub fn laws(&self) -> &'a Laws {
+        &self.names.laws
+    }
+
+    /// Number of the curve `name` among all.
+    pub fn curve(&self, name: &str) -> Option<usize> {
+        let is_seen = |curve: &Curve| {
+            curve.name == name
+                && curve.rounds.len() <= self.rounds.len()
+                && curve.rounds.iter().zip(self.rounds).all(|(own, round)| own.id == round.id)
+        };
+        self.names.curves.iter().rposition(is_seen)
+    }
+
     fn name(&self, name: &str) -> Result<Value, Gap> {
         if let Some(round) = self.rounds.iter().rev().find(|round| round.variable == name) {
             return Ok(Value::scalar(Number::still(round.count as f64)));
@@ -108,6 +137,10 @@ impl<'a> Scope<'a> {
             "PI" => return Ok(Value::scalar(Number::still(core::f64::consts::PI))),
             "TAU" => return Ok(Value::scalar(Number::still(core::f64::consts::TAU))),
             _ => {}
+        }
+        // The name of a curve stands for its number, which its functions take.
+        if let Some(index) = self.curve(name) {
+            return Ok(Value::scalar(Number::still(index as f64)));
         }
         // Of the names of a text without faults those of events and of what they latch are left.
         let all = self.names.definitions.get(name);
@@ -162,8 +195,21 @@ pub fn value(expression: &Expression, scope: &Scope<'_>) -> Result<Value, Gap> {
                 let (b, a) = (pop(&mut stack)?, pop(&mut stack)?);
                 joined(*operator, a, b)?
             }
+            Operation::Call { function, order, indexed, .. } if scope.laws().has(function) => {
+                let x = pop(&mut stack)?.number()?;
+                let index = if *indexed { Some(pop(&mut stack)?.count()?) } else { None };
+                Value::scalar(scope.laws().call(function, index, usize::from(*order), x)?)
+            }
             Operation::Call { function, indexed: true, .. } => {
                 return Err(Gap(format!("`{function}` of the caller")));
+            }
+            Operation::Call { function, order: 0, arguments: 2, .. }
+                if matches!(function.as_str(), "distance" | "outward" | "place") =>
+            {
+                let (number, argument) = (pop(&mut stack)?.count()?, pop(&mut stack)?);
+                let curve = scope.names.curves.get(number);
+                let curve = curve.ok_or_else(|| Gap(format!("`{function}` of no curve")))?;
+                curve.call(function, &argument, scope)?
             }
             Operation::Call { function, order: 0, arguments, indexed: false } => {
                 let arguments = pop_many(&mut stack, *arguments)?;

@@ -4,8 +4,10 @@
 //! energies and forces are read and computed here. So no fault of resolving, differentiation, structure or emission is shared. It
 //! shares the reader of the language. A part of the language that it does not evaluate is a [`Gap`], which is told.
 
+mod curves;
 mod evaluation;
 mod functions;
+mod laws;
 mod mechanics;
 mod number;
 mod quantities;
@@ -21,9 +23,12 @@ use mbs_codegen::syntax_tree::{
     Element, Equation, Expression, Item, Operation, Operator, StatementKind, Type,
 };
 
+use self::curves::Curve;
 pub use self::evaluation::Gap;
 use self::evaluation::{Definition, Names, Scope, Value, joined, value};
 use self::functions::dot;
+pub use self::laws::Jet;
+use self::laws::Laws;
 use self::mechanics::mechanics;
 use self::number::{Dual, Number};
 pub use self::state::{Balance, OracleRow, OracleState, Quantity};
@@ -49,6 +54,9 @@ pub struct Oracle {
     /// Constants, parameters and inputs.
     given: Rc<BTreeMap<String, Value>>,
     definitions: Rc<BTreeMap<String, Vec<Definition>>>,
+    /// Functions of the caller, and curves.
+    laws: Rc<Laws>,
+    curves: Rc<Vec<Curve>>,
     /// Names of constraints and drives, with the indices of their rows.
     groups: Vec<(String, core::ops::Range<usize>)>,
     /// Bodies whose Euler parameters are coordinates, by their places in the text: each has a row of its own, e·e = 1.
@@ -73,10 +81,24 @@ impl Oracle {
     /// # Errors
     /// The part of the text that cannot be read.
     pub fn read(source: &str, scene: Option<&str>, known: &dyn Fn(&str) -> Option<f64>) -> Result<Self, Gap> {
+        Oracle::with_functions(source, scene, known, &|_| None)
+    }
+
+    /// The same with functions of the caller by their names, `lift` or `lift[0]`.
+    ///
+    /// # Errors
+    /// The part of the text that cannot be read.
+    pub fn with_functions(
+        source: &str,
+        scene: Option<&str>,
+        known: &dyn Fn(&str) -> Option<f64>,
+        functions: &dyn Fn(&str) -> Option<Jet>,
+    ) -> Result<Self, Gap> {
         let placed = unrolled(source, scene).map_err(Gap)?;
         let mut names = Names::default();
         let (mut coordinates, mut states, mut turns) = (Vec::new(), Vec::new(), Vec::new());
         let mut definitions: BTreeMap<String, Vec<Definition>> = BTreeMap::new();
+        let (mut laws, mut curves) = (Laws::default(), Vec::new());
         for Placed { kind, rounds } in &placed {
             match kind {
                 StatementKind::Const { name, value: expression, .. } => {
@@ -106,9 +128,25 @@ impl Oracle {
                     let definition = Definition { rounds: rounds.clone(), value: value.clone() };
                     definitions.entry(name.text.clone()).or_default().push(definition);
                 }
-                StatementKind::Function { name, .. } => {
-                    return Err(Gap(format!("the caller's function `{}`", name.text)));
+                StatementKind::Function { name, signature } => {
+                    let name = &name.text;
+                    let labels = match shape(&signature.value, &names)?.first() {
+                        Some(length) => (0..*length).map(|index| format!("{name}[{index}]")).collect(),
+                        None => vec![name.clone()],
+                    };
+                    for label in labels {
+                        let law = functions(&label);
+                        let law = law.ok_or_else(|| Gap(format!("the caller's function `{label}`")))?;
+                        laws.known.insert(label, law);
+                    }
                 }
+                StatementKind::Curve { name, centre, radius, number } => curves.push(Curve {
+                    name: name.text.clone(),
+                    rounds: rounds.clone(),
+                    centre: centre.clone(),
+                    radius: radius.clone(),
+                    number: number.clone(),
+                }),
                 _ => {}
             }
         }
@@ -120,6 +158,8 @@ impl Oracle {
             turns,
             given,
             definitions,
+            laws: Rc::new(laws),
+            curves: Rc::new(curves),
             groups: Vec::new(),
             turning: Vec::new(),
         };
@@ -156,6 +196,11 @@ impl Oracle {
         }
     }
 
+    /// A function of the caller whose derivatives contradict its values, where one was called so far.
+    pub fn contradiction(&self) -> Option<String> {
+        self.laws.fault()
+    }
+
     /// Number of rows.
     pub fn row_count(&self) -> usize {
         self.groups.last().map_or(0, |(_, rows)| rows.end)
@@ -166,6 +211,8 @@ impl Oracle {
         let mut names = Names {
             given: self.given.clone(),
             definitions: self.definitions.clone(),
+            laws: self.laws.clone(),
+            curves: self.curves.clone(),
             time: Number { value: time, rate: Dual::still(1.0) },
             ..Names::default()
         };
@@ -246,9 +293,13 @@ impl Oracle {
                             let found = residual(equation, &Scope::of(names, rounds))?;
                             show(&name.text, found.items.into_iter().map(|number| (number, true)).collect());
                         }
-                        // A row that is left out would be one that always holds.
-                        if let Item::On { curve, .. } = item {
-                            return Err(Gap(format!("the curve `{}`", curve.text)));
+                        if let Item::On { point, curve, .. } = item {
+                            let scope = Scope::of(names, rounds);
+                            // A row that is left out would be one that always holds.
+                            let found = scope.curve(&curve.text).and_then(|index| names.curves.get(index));
+                            let found = found.ok_or_else(|| Gap(format!("the curve `{}`", curve.text)))?;
+                            let row = found.row(&value(point, &scope)?, &scope)?;
+                            show(&name.text, vec![(row, true)]);
                         }
                         Ok(())
                     })?;

@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::path::Path;
+use std::rc::Rc;
 
-use super::{Gap, Oracle, OracleState};
+use super::{Gap, Jet, Oracle, OracleState};
 
 const PENDULUM: &str = "mechanism Pendulum; param L: m = 2; param mass: kg = 3; coord p: [m; 2]; \
     body bob { mass: mass, com: p } gravity weight { acceleration: [0, -10] } \
@@ -83,6 +84,66 @@ fn loops_effects_and_sums_are_read_in_the_order_of_the_text() {
     let phi: Vec<f64> = rows.iter().filter_map(|row| row.phi).collect();
     let expected = [0.1_f64.sin(), 2.0 * 0.2_f64.sin(), 3.0 * 0.3_f64.sin(), 0.5 - 0.2, 0.5 - 0.6];
     assert!(phi.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15) && phi.len() == 5, "{phi:?}");
+}
+
+/// Polar radius (m) of a circle of 20 mm, 5 mm beside the centre, with its derivatives by differences in Richardson's scheme.
+fn eccentric(w: f64) -> Vec<f64> {
+    let radius = |w: f64| 5e-3 * w.cos() + (4e-4 - 2.5e-5 * w.sin().powi(2)).sqrt();
+    let first = |h: f64| (radius(w + h) - radius(w - h)) / (2.0 * h);
+    let second = |h: f64| (radius(w + h) - 2.0 * radius(w) + radius(w - h)) / (h * h);
+    let better = |f: &dyn Fn(f64) -> f64| (4.0 * f(2e-3) - f(4e-3)) / 3.0;
+    vec![radius(w), better(&first), better(&second)]
+}
+
+#[test]
+fn curves_and_functions_of_the_caller_are_read() {
+    let source = "mechanism Cam; function pitch: [m; 2](rad), C3, periodic TAU; coord theta: rad; coord A: [m; 2]; \
+        curve cam = polar pitch[1] about [3mm, 1mm] turned theta; constraint ride { A on cam; } \
+        out apart: m = distance(A, cam); out normal: [1; 2] = outward(A, cam); out there: [m; 2] = place(0.4, cam); \
+        out slope: m = pitch[1].d1(A[0]/1m);";
+    let functions = |name: &str| (name == "pitch[1]").then(|| Rc::new(eccentric) as Jet);
+    let missing = Oracle::with_functions(source, None, &|_| None, &functions);
+    assert!(matches!(missing, Err(Gap(words)) if words.contains("`pitch[0]`")));
+    let all = |_: &str| Some(Rc::new(eccentric) as Jet);
+    let oracle = Oracle::with_functions(source, None, &|_| None, &all).expect("a text");
+    // A point of the circle in the direction 1.1 from its own centre.
+    let at = |theta: f64, far: f64| {
+        let (sin, cos) = theta.sin_cos();
+        let (x, y) = (3e-3 + 5e-3 * cos, 1e-3 + 5e-3 * sin);
+        OracleState {
+            q: vec![theta, x + far * 1.1_f64.cos(), y + far * 1.1_f64.sin()],
+            qd: vec![2.0, 0.1, -0.3],
+            qdd: vec![0.0; 3],
+            ..OracleState::default()
+        }
+    };
+    let state = at(0.7, 0.02);
+    assert!(oracle.rows(&state).expect("rows")[0].phi.is_some_and(|phi| phi.abs() < 1e-17));
+    let found = |name: &str, state: &OracleState| {
+        let all = oracle.quantities(name, state).expect("an output");
+        all.into_iter().map(|found| found.value).collect::<Vec<_>>()
+    };
+    let close = |a: f64, b: f64, within: f64| assert!((a - b).abs() < within, "{a} {b}");
+    close(found("apart", &state)[0], 0.0, 1e-17);
+    // Of first order beside the curve.
+    close(found("apart", &at(0.7, 0.0201))[0], 1e-4, 1e-6);
+    let normal = found("normal", &state);
+    close(normal[0], 1.1_f64.cos(), 1e-9);
+    close(normal[1], 1.1_f64.sin(), 1e-9);
+    let there = found("there", &state);
+    close(
+        (there[0] - state.q[1] + 0.02 * 1.1_f64.cos()).hypot(there[1] - state.q[2] + 0.02 * 1.1_f64.sin()),
+        0.02,
+        1e-9,
+    );
+    close(found("slope", &state)[0], eccentric(state.q[1])[1], 1e-17);
+    // Φ̇ is the difference of Φ along the motion.
+    let moved = |h: f64| {
+        let q = state.q.iter().zip(&state.qd).map(|(q, qd)| q + h * qd).collect();
+        oracle.rows(&OracleState { q, ..state.clone() }).expect("rows")[0].phi.unwrap_or(f64::NAN)
+    };
+    close(oracle.rows(&state).expect("rows")[0].rate, (moved(1e-5) - moved(-1e-5)) / 2e-5, 1e-8);
+    assert_eq!(oracle.contradiction(), None);
 }
 
 #[test]
