@@ -73,7 +73,7 @@ pub struct MovedCosts {
 macro_rules! comparable {
     ($make:expr, $kind:ident, [$($function:ident),* $(,)?] $(,)?) => {
         |values: &[(usize, f64)]| {
-            let (mechanism, doubles) = $crate::in_all_numbers!($make, $kind, [$($function),*], values);
+            let (mechanism, doubles) = $crate::erased::in_double::in_all_numbers!($make, $kind, [$($function),*], values);
             $crate::erased::costs::comparable(&mechanism).with_doubles(doubles)
         }
     };

@@ -163,6 +163,8 @@ macro_rules! in_all_numbers {
     }};
 }
 
+pub use in_all_numbers;
+
 /// Number of components of parameters and inputs.
 pub fn variables<S: Mechanism<f64, N, M>, const N: usize, const M: usize>(_: &S) -> usize {
     S::VARIABLES.len()

@@ -86,7 +86,7 @@ pub trait MovedVariants {
 macro_rules! variable {
     ($make:expr, $kind:ident, [$($function:ident),* $(,)?] $(,)?) => {
         |values: &[(usize, f64)]| {
-            let (mechanism, _) = $crate::in_all_numbers!($make, $kind, [$($function),*], values);
+            let (mechanism, _) = $crate::erased::in_double::in_all_numbers!($make, $kind, [$($function),*], values);
             $crate::erased::variations::variable(&mechanism)
         }
     };

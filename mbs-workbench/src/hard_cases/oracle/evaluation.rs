@@ -4,13 +4,14 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use mbs_codegen::syntax_tree::{Expression, Operation, Operator, SUFFIXES, Unit};
+use mbs_codegen::syntax_tree::{Expression, Operation, Operator, SUFFIXES, StatementKind, Unit};
 
 use super::curves::Curve;
 use super::functions;
 use super::laws::Laws;
+use super::mechanics::by_name;
 use super::number::Number;
-use super::tree::Round;
+use super::tree::{Placed, Round};
 
 /// A part of the language that the oracle does not evaluate, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -73,6 +74,10 @@ pub struct Names {
     pub moving: BTreeMap<String, Value>,
     /// `let`s by name; those of loops once a round.
     pub definitions: Rc<BTreeMap<String, Vec<Definition>>>,
+    /// The statements.
+    pub placed: Rc<Vec<Placed>>,
+    /// Deflections (m) of bristles by the places of their frictions among the statements.
+    pub bristles: BTreeMap<usize, f64>,
     /// Functions of the caller.
     pub laws: Rc<Laws>,
     /// Curves in the order of the text.
@@ -113,6 +118,49 @@ impl<'a> Scope<'a> {
     /// Functions of the caller.
     pub fn laws(&self) -> &'a Laws {
         &self.names.laws
+    }
+
+    /// Deflection (m) of the bristles of a friction by its place among the statements.
+    pub fn deflection(&self, index: usize) -> f64 {
+        self.names.bristles.get(&index).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Place among the statements of an element or a load, of those in loops the one of a number or of the same rounds.
+    fn element(&self, name: &str, number: Option<usize>) -> Option<usize> {
+        let is_it = |placed: &Placed| match &placed.kind {
+            StatementKind::Element { name: own, .. } | StatementKind::Load { name: own, .. } => {
+                own.text == name
+            }
+            _ => false,
+        };
+        let is_seen = |placed: &Placed| {
+            placed.rounds.len() <= self.rounds.len()
+                && placed.rounds.iter().zip(self.rounds).all(|(own, round)| own.id == round.id)
+        };
+        let mut all = self.names.placed.iter().enumerate().filter(|(_, placed)| is_it(placed));
+        let found = match number {
+            Some(number) => all.nth(number),
+            None => all.find(|(_, placed)| is_seen(placed)),
+        };
+        found.map(|(index, _)| index)
+    }
+
+    /// Place among the statements of the element whose normal force is the whole of an expression.
+    pub fn referred(&self, expression: &Expression) -> Option<usize> {
+        let (last, number) = expression.code.split_last()?;
+        let Operation::Reference { function, targets } = &last.operation else { return None };
+        let [target] = targets.as_slice() else { return None };
+        let number = match target.indexed {
+            true => Some(value(&Expression { code: number.to_vec() }, self).ok()?.count().ok()?),
+            false => None,
+        };
+        matches!(function.as_str(), "normal" | "force").then(|| self.element(&target.name.text, number))?
+    }
+
+    /// The statement at a place, and its names.
+    pub fn statement(&self, index: usize) -> Option<(&'a StatementKind, Scope<'a>)> {
+        let placed = self.names.placed.get(index)?;
+        Some((&placed.kind, Scope { names: self.names, rounds: &placed.rounds, depth: self.depth + 1 }))
     }
 
     /// Number of the curve `name` among all.
@@ -259,6 +307,11 @@ pub fn value(expression: &Expression, scope: &Scope<'_>) -> Result<Value, Gap> {
             Operation::Reference { function, targets } => {
                 let [target] = targets.as_slice() else { return Err(Gap(format!("`{function}`"))) };
                 let index = if target.indexed { Some(pop(&mut stack)?.count()?) } else { None };
+                let own = Scope { rounds: &rounds, ..*scope };
+                if let Some(element) = own.element(&target.name.text, index) {
+                    stack.push(by_name(function, element, &own)?);
+                    continue;
+                }
                 let rows = scope.names.lambda.get(&target.name.text);
                 let rows = rows.ok_or_else(|| Gap(format!("`{function}({})`", target.name.text)))?;
                 let sign = match function.as_str() {

@@ -7,6 +7,7 @@
 mod curves;
 mod evaluation;
 mod functions;
+mod held;
 mod laws;
 mod mechanics;
 mod number;
@@ -27,6 +28,7 @@ use self::curves::Curve;
 pub use self::evaluation::Gap;
 use self::evaluation::{Definition, Names, Scope, Value, joined, value};
 use self::functions::dot;
+pub use self::held::{HeldForces, Slack};
 pub use self::laws::Jet;
 use self::laws::Laws;
 use self::mechanics::mechanics;
@@ -45,7 +47,7 @@ enum Along<'a> {
 /// A mechanism as its text says it.
 #[derive(Debug)]
 pub struct Oracle {
-    placed: Vec<Placed>,
+    placed: Rc<Vec<Placed>>,
     /// Names and shapes of coordinates and of first-order states.
     coordinates: Vec<(String, Vec<usize>)>,
     states: Vec<(String, Vec<usize>)>,
@@ -59,6 +61,8 @@ pub struct Oracle {
     curves: Rc<Vec<Curve>>,
     /// Names of constraints and drives, with the indices of their rows.
     groups: Vec<(String, core::ops::Range<usize>)>,
+    /// Frictions with bristles by their places in the text: each has a state behind those of the text.
+    bristled: Vec<usize>,
     /// Bodies whose Euler parameters are coordinates, by their places in the text: each has a row of its own, e·e = 1.
     turning: Vec<usize>,
 }
@@ -151,8 +155,15 @@ impl Oracle {
             }
         }
         let (given, definitions) = (Rc::new(names.moving), Rc::new(definitions));
+        let is_bristled = |(index, placed): (usize, &Placed)| {
+            let StatementKind::Element { kind: Element::Friction, fields, .. } = &placed.kind else {
+                return None;
+            };
+            fields.iter().any(|field| field.name.text == "bristles").then_some(index)
+        };
+        let bristled = placed.iter().enumerate().filter_map(is_bristled).collect();
         let mut oracle = Oracle {
-            placed,
+            placed: Rc::new(placed),
             coordinates,
             states,
             turns,
@@ -161,6 +172,7 @@ impl Oracle {
             laws: Rc::new(laws),
             curves: Rc::new(curves),
             groups: Vec::new(),
+            bristled,
             turning: Vec::new(),
         };
         // A first look at a state without two equal numbers tells which bodies turn with coordinates, and how many rows there are.
@@ -211,6 +223,7 @@ impl Oracle {
         let mut names = Names {
             given: self.given.clone(),
             definitions: self.definitions.clone(),
+            placed: self.placed.clone(),
             laws: self.laws.clone(),
             curves: self.curves.clone(),
             time: Number { value: time, rate: Dual::still(1.0) },
@@ -243,6 +256,10 @@ impl Oracle {
             names.moving.insert(name.clone(), Value { shape: shape.clone(), items });
             k += length;
         }
+        let deflection = |(place, index): (usize, usize)| {
+            (index, state.states.get(k + place).copied().unwrap_or(f64::NAN))
+        };
+        names.bristles = self.bristled.iter().copied().enumerate().map(deflection).collect();
         let multiplier = |row| Number::still(state.lambda.get(row).copied().unwrap_or(f64::NAN));
         for (group, rows) in &self.groups {
             names.lambda.entry(group.clone()).or_default().extend(rows.clone().map(multiplier));
@@ -373,6 +390,12 @@ impl Oracle {
         place.potential.iter().for_each(|potential| balance.add(potential.a));
         pace.dissipation.iter().for_each(|dissipation| balance.add(dissipation.a));
         place.forces.iter().for_each(|along| balance.add(-along.force * along.place.value.a));
+        for (index, held) in place.held.iter().enumerate() {
+            let force = state.held.get(index);
+            let force = force
+                .ok_or_else(|| Gap(format!("the force of `{}`, which is not in the state", held.name)))?;
+            balance.add(-force * held.place.value.a);
+        }
         self.each_row(&at, &mut |_, rows, found| {
             for ((number, _), row) in found.iter().zip(rows) {
                 balance.add(state.lambda.get(row).copied().unwrap_or(f64::NAN) * number.value.a);
@@ -407,13 +430,6 @@ impl Oracle {
         Ok(change)
     }
 
-    /// `true` with contacts, whose closing and opening end steps.
-    pub fn has_contacts(&self) -> bool {
-        let is =
-            |placed: &Placed| matches!(&placed.kind, StatementKind::Element { kind: Element::Contact, .. });
-        self.placed.iter().any(is)
-    }
-
     /// Kinetic and potential energy, T + V (J), and its rate (W) that velocities and accelerations give it.
     ///
     /// # Errors
@@ -431,7 +447,7 @@ impl Oracle {
     pub fn branches(&self, state: &OracleState) -> Result<Vec<(String, f64)>, Gap> {
         let names = self.names(state, Along::Nothing);
         let mut found = Vec::new();
-        for Placed { kind, rounds } in &self.placed {
+        for Placed { kind, rounds } in self.placed.iter() {
             if let StatementKind::Branch { name, at_start: false, larger, smaller } = kind {
                 let scope = Scope::of(&names, rounds);
                 let [larger, smaller] = [larger, smaller].map(|side| value(side, &scope)?.number());
@@ -439,17 +455,6 @@ impl Oracle {
             }
         }
         Ok(found)
-    }
-
-    /// `true` with masses or forces.
-    pub fn is_dynamic(&self) -> bool {
-        let is = |placed: &Placed| {
-            matches!(
-                placed.kind,
-                StatementKind::Element { .. } | StatementKind::Load { .. } | StatementKind::Energy { .. }
-            )
-        };
-        self.placed.iter().any(is)
     }
 }
 
