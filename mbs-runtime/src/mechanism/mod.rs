@@ -197,6 +197,11 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// The design in lane `lane`.
     fn lane(&self, lane: usize) -> Self::Lane;
 
+    /// Shows `see` the value at `x` of the function at `index` of [`FUNCTIONS`](Self::FUNCTIONS), and its derivatives up to the order
+    /// there. Without such a function it shows nothing.
+    #[inline]
+    fn jets(&self, _index: usize, _x: T, _see: impl FnOnce(&[T])) {}
+
     /// The parameters and inputs of [`VARIABLES`](Self::VARIABLES), in their order.
     fn values(&self) -> Self::Values;
     /// Restores the parameters and inputs.

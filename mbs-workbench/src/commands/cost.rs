@@ -11,7 +11,7 @@ use super::assignment::{Assignment, assignment};
 use super::chosen::finite;
 use super::cost_extras::{ask_peers, valleys};
 use super::document::Output;
-use super::of_file::started;
+use super::of_file::{first_that_compiles, studies_of_card};
 use super::report_files::{require_writable, write_report};
 use super::target::Target;
 use super::{CommandError, atlas, cost_words, summary};
@@ -26,7 +26,7 @@ use crate::cost::result::CostResult;
 use crate::cost::splines;
 use crate::erased::costs::Comparable;
 use crate::erased::facade::AnyEquations;
-use crate::forge::{Blueprint, Forge, NameFrom, Study};
+use crate::forge::{Blueprint, Forge, Study};
 use crate::mismatch::{nearest, wrapped};
 use crate::setting::{Kernel, MotionMethod};
 use crate::tables::valley::NamedLaw;
@@ -126,14 +126,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         known = cost_known::written(&target, equations, !arguments.parameters.is_empty(), until)?;
         let own = equations.path();
         let functions = equations.functions();
-        let of = |study: &Study| {
-            let text = (own.as_str(), equations.source(), functions);
-            Blueprint::study_of_card(study, &forge, target.card(), text)
-        };
-        // Functions that exist in `f64` alone are known by a first program that does not compile.
-        let others = [NameFrom::Text, NameFrom::Constructor].map(|name| Study::COST.in_doubles(name));
-        let others = others.iter().filter(|_| !functions.is_empty());
-        [Study::COST].iter().chain(others).map(of).collect::<Result<Vec<_>, _>>()?
+        studies_of_card(Study::COST, &forge, target.card(), (&own, equations.source(), functions))?
     };
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;
@@ -146,41 +139,6 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         words.extend(["--known".into(), path.into_os_string()]);
     }
     first_that_compiles(&forge, &blueprints, &words)
-}
-
-/// Builds the first program of `blueprints` that compiles and runs it. Those behind the first one take functions in `f64` alone, and are
-/// tried only where such functions are the reason.
-pub(super) fn first_that_compiles(
-    forge: &Forge,
-    blueprints: &[Blueprint],
-    arguments: &[std::ffi::OsString],
-) -> Result<ExitCode, CommandError> {
-    let [first, others @ ..] = blueprints else { return Ok(ExitCode::FAILURE) };
-    let mut ended = studied(forge, first, arguments.to_vec());
-    let is_of_doubles = matches!(&ended, Err(CommandError::Failed(reason)) if reason.contains("Function<"));
-    for other in others.iter().filter(|_| is_of_doubles) {
-        ended = studied(forge, other, arguments.to_vec());
-        if !matches!(ended, Err(CommandError::Failed(_))) {
-            break;
-        }
-    }
-    ended
-}
-
-/// Builds the program of a study and runs it.
-pub(super) fn studied(
-    forge: &Forge,
-    blueprint: &Blueprint,
-    arguments: Vec<std::ffi::OsString>,
-) -> Result<ExitCode, CommandError> {
-    started(forge, blueprint, arguments).map_err(|error| match error {
-        CommandError::Failed(reason) if blueprint.origin.is_none() && reason.starts_with("error:") => {
-            CommandError::Failed(format!(
-                "the study is built in a program of its own: what the card's constructor names must be public\n{reason}"
-            ))
-        }
-        error => error,
-    })
 }
 
 /// The refusal of options that a motion from drives has no use for.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use super::CommandError;
-use super::cost::first_that_compiles;
+use super::of_file::first_that_compiles;
 use crate::cost::kernels;
 use crate::cost::points::Point;
 use crate::forge::{Blueprint, Forge};

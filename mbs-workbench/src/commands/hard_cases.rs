@@ -9,8 +9,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::assignment::{Assignment, assignment};
-use super::cost::{above_zero, machine, methods, studied};
+use super::cost::{above_zero, machine, methods};
 use super::document::Output;
+use super::of_file::{first_that_compiles, studies_of_card};
 use super::report_files::{require_writable, write_report};
 use super::target::Target;
 use super::{CommandError, hard_case_list, summary};
@@ -81,30 +82,27 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
     let forge = Forge { release: true, ..caller };
     // What is wrong on the command line is said before anything is built.
     methods(&arguments.methods)?;
-    let blueprint = if let Some(name) = arguments.name.as_deref().filter(|name| is_file(name)) {
+    let blueprints = if let Some(name) = arguments.name.as_deref().filter(|name| is_file(name)) {
         let text = TextFile::read(name)?;
         super::functions::require(&text)?;
-        Blueprint::study_of_text(&Study::HARD_CASES, &text)
+        vec![Blueprint::study_of_text(&Study::HARD_CASES, &text)]
     } else if let Some(name) = &arguments.name {
         let target = Target::find(catalogue, name)?;
         let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
         if !target.is_free() && !arguments.methods.is_empty() {
             return Err(driven(&target));
         }
-        let source = instance.equations().source();
-        Blueprint::study_of_card(
-            &Study::HARD_CASES,
-            &forge,
-            target.card(),
-            (&instance.equations().path(), source, &[]),
-        )?
+        let equations = instance.equations();
+        let text = (equations.path(), equations.source(), equations.functions());
+        studies_of_card(Study::HARD_CASES, &forge, target.card(), (&text.0, text.1, text.2))?
     } else {
-        hard_case_list::blueprint(arguments)?
+        vec![hard_case_list::blueprint(arguments)?]
     };
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;
     }
-    studied(&forge, &blueprint, std::env::args_os().skip(1).collect())
+    let words: Vec<_> = std::env::args_os().skip(1).collect();
+    first_that_compiles(&forge, &blueprints, &words)
 }
 
 /// The refusal of methods where drives move the mechanism.

@@ -6,10 +6,12 @@ use std::process::{Command, ExitCode};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use mbs_runtime::FunctionEntry;
 
 use super::CommandError;
+use crate::card::Card;
 use crate::catalogue::Catalogue;
-use crate::forge::{Blueprint, Forge};
+use crate::forge::{Blueprint, Forge, NameFrom, Study};
 use crate::target_directory::{STARTED_FROM, target_directory};
 use crate::text_file::TextFile;
 
@@ -67,4 +69,53 @@ pub fn started(
         .map_err(|error| CommandError::Failed(format!("{} does not start: {error}", program.display())))?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// Programs of a study of a card, those behind the first one for functions of the caller in `f64` alone. These are known by a first
+/// program that does not compile.
+pub(super) fn studies_of_card(
+    study: Study,
+    forge: &Forge,
+    card: &Card,
+    (own, source, functions): (&str, &str, &[FunctionEntry]),
+) -> Result<Vec<Blueprint>, CommandError> {
+    let others = [NameFrom::Text, NameFrom::Constructor].map(|name| study.in_doubles(name));
+    let others = others.iter().filter(|_| !functions.is_empty());
+    let of = |study: &Study| Blueprint::study_of_card(study, forge, card, (own, source, functions));
+    Ok([study].iter().chain(others).map(of).collect::<Result<Vec<_>, _>>()?)
+}
+
+/// Builds the first program of `blueprints` that compiles and runs it. Those behind the first one take functions in `f64` alone, and are
+/// tried only where such functions are the reason.
+pub(super) fn first_that_compiles(
+    forge: &Forge,
+    blueprints: &[Blueprint],
+    arguments: &[std::ffi::OsString],
+) -> Result<ExitCode, CommandError> {
+    let [first, others @ ..] = blueprints else { return Ok(ExitCode::FAILURE) };
+    let mut ended = studied(forge, first, arguments.to_vec());
+    let is_of_doubles = matches!(&ended, Err(CommandError::Failed(reason)) if reason.contains("Function<"));
+    for other in others.iter().filter(|_| is_of_doubles) {
+        ended = studied(forge, other, arguments.to_vec());
+        if !matches!(ended, Err(CommandError::Failed(_))) {
+            break;
+        }
+    }
+    ended
+}
+
+/// Builds the program of a study and runs it.
+pub(super) fn studied(
+    forge: &Forge,
+    blueprint: &Blueprint,
+    arguments: Vec<std::ffi::OsString>,
+) -> Result<ExitCode, CommandError> {
+    started(forge, blueprint, arguments).map_err(|error| match error {
+        CommandError::Failed(reason) if blueprint.origin.is_none() && reason.starts_with("error:") => {
+            CommandError::Failed(format!(
+                "the study is built in a program of its own: what the card's constructor names must be public\n{reason}"
+            ))
+        }
+        error => error,
+    })
 }

@@ -91,6 +91,9 @@ where
     fn lane(&self, lane: usize) -> Self::Lane {
         Adapted { mechanism: self.mechanism.lane(lane), adaption: self.adaption.clone() }
     }
+    fn jets(&self, index: usize, x: T, see: impl FnOnce(&[T])) {
+        self.mechanism.jets(index, x, see);
+    }
     fn values(&self) -> Self::Values {
         self.mechanism.values()
     }

@@ -105,6 +105,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
         fn values(self) -> S::Values;
         fn set_values(mut self, values: S::Values);
         fn lane(self, lane: usize) -> S::Lane;
+        fn jets(self, index: usize, x: f64, see: impl FnOnce(&[f64]));
         fn turn_back(mut self, coordinate: u16, turns: i64);
         fn phases(self) -> S::Phases;
         fn set_phases(mut self, phases: S::Phases);

@@ -73,24 +73,7 @@ pub struct MovedCosts {
 macro_rules! comparable {
     ($make:expr, $kind:ident, [$($function:ident),* $(,)?] $(,)?) => {
         |values: &[(usize, f64)]| {
-            #[allow(unused_imports)]
-            use $crate::erased::in_double::{
-                EachInAllNumbers, EachInDoubleAlone, Given, InAllNumbers, InDoubleAlone,
-            };
-            let given = $make;
-            let mut doubles = ::std::vec::Vec::new();
-            $(if (&Given(::core::clone::Clone::clone(&given.$function))).is_double() {
-                doubles.push(::core::stringify!($function));
-            })*
-            let mut mechanism = $kind::new($((&Given(::core::clone::Clone::clone(&given.$function))).chosen()),*);
-            for index in 0..$crate::erased::costs::variables(&given) {
-                if let ::core::option::Option::Some(value) = ::mbs_runtime::Mechanism::get(&given, index) {
-                    ::mbs_runtime::Mechanism::set(&mut mechanism, index, value);
-                }
-            }
-            for (index, value) in values {
-                ::mbs_runtime::Mechanism::set(&mut mechanism, *index, *value);
-            }
+            let (mechanism, doubles) = $crate::erased::in_double::in_all_numbers!($make, $kind, [$($function),*], values);
             $crate::erased::costs::comparable(&mechanism).with_doubles(doubles)
         }
     };
@@ -103,11 +86,6 @@ macro_rules! comparable {
             $crate::erased::costs::comparable(&mechanism)
         }
     };
-}
-
-/// Number of components of parameters and inputs.
-pub fn variables<S: Mechanism<f64, N, M>, const N: usize, const M: usize>(_: &S) -> usize {
-    S::VARIABLES.len()
 }
 
 /// All that the comparison needs of `mechanism`.

@@ -2,6 +2,7 @@
 
 use core::fmt;
 use core::hint::black_box;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use mbs_runtime::{
@@ -16,6 +17,9 @@ use crate::erased::masses::{Loads, Masses, Tables};
 use crate::motion;
 use crate::motion::course::Course;
 pub use crate::motion::{CoordinateCurve, Motion, OutputCurve, State, spread};
+
+/// Value and derivatives of the function at an index of [`functions`](AnyEquations::functions), at an argument.
+pub type Jets = Rc<dyn Fn(usize, f64) -> Vec<f64>>;
 
 /// Names and functions of a mechanism of any size, with its parameters; it need not be square. Vectors are in the
 /// order of the text.
@@ -39,6 +43,10 @@ pub trait AnyEquations {
     fn coordinate_scales(&self) -> Vec<f64>;
     /// Reference metric of the rows: the reference length to the power that the row has of metres: M.
     fn row_scales(&self) -> Vec<f64>;
+    /// The functions that the caller supplies; nothing of those that are not there.
+    fn jets(&self) -> Jets {
+        Rc::new(|_, _| Vec::new())
+    }
     /// All functions of one state, which need not satisfy the constraints.
     ///
     /// # Panics
@@ -234,7 +242,7 @@ impl<S, const N: usize, const M: usize> Facade<S, N, M> {
 
 impl<S, F, const N: usize, const M: usize> AnyEquations for Facade<S, N, M, F>
 where
-    S: Mechanism<f64, N, M>,
+    S: Mechanism<f64, N, M> + 'static,
     F: Forced<S, N, M>,
 {
     fn description(&self) -> &'static Description {
@@ -257,6 +265,14 @@ where
     }
     fn row_scales(&self) -> Vec<f64> {
         self.0.row_scales(&self.0.parameters()).to_vec()
+    }
+    fn jets(&self) -> Jets {
+        let mechanism = self.0.clone();
+        Rc::new(move |index, x| {
+            let mut found = Vec::new();
+            mechanism.jets(index, x, |jet| found.extend_from_slice(jet));
+            found
+        })
     }
 
     fn evaluate(&self, state: &State) -> Functions {
@@ -288,7 +304,7 @@ where
 
 impl<S, F, const N: usize, const M: usize> AnyMechanism for Facade<S, N, M, F>
 where
-    S: Kinematic<f64, N, M>,
+    S: Kinematic<f64, N, M> + 'static,
     F: Forced<S, N, M>,
 {
     fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {

@@ -1,6 +1,6 @@
 //! Functions of the caller that exist in `f64` alone, in all numbers.
 
-use mbs_runtime::{Function, Interval, Lanes, Real, Scalar};
+use mbs_runtime::{Function, Interval, Lanes, Mechanism, Real, Scalar};
 
 use crate::double_double::DoubleDouble as D;
 
@@ -134,6 +134,40 @@ impl<F: Clone + Function<f64>, const N: usize> EachInDoubleAlone for &Given<[F; 
     fn chosen(&self) -> [InDouble<F>; N] {
         self.0.clone().map(InDouble)
     }
+}
+
+/// The mechanism that an expression makes, with its functions of the caller in all numbers and with `values` of parameters and inputs by
+/// their indices, and the names of functions that are in `f64` alone: `in_all_numbers!(make(), Wiper, [lift], values)`.
+#[macro_export]
+macro_rules! in_all_numbers {
+    ($make:expr, $kind:ident, [$($function:ident),* $(,)?], $values:expr) => {{
+        #[allow(unused_imports)]
+        use $crate::erased::in_double::{
+            EachInAllNumbers, EachInDoubleAlone, Given, InAllNumbers, InDoubleAlone,
+        };
+        let given = $make;
+        let mut doubles = ::std::vec::Vec::new();
+        $(if (&Given(::core::clone::Clone::clone(&given.$function))).is_double() {
+            doubles.push(::core::stringify!($function));
+        })*
+        let mut mechanism = $kind::new($((&Given(::core::clone::Clone::clone(&given.$function))).chosen()),*);
+        for index in 0..$crate::erased::in_double::variables(&given) {
+            if let ::core::option::Option::Some(value) = ::mbs_runtime::Mechanism::get(&given, index) {
+                ::mbs_runtime::Mechanism::set(&mut mechanism, index, value);
+            }
+        }
+        for (index, value) in $values {
+            ::mbs_runtime::Mechanism::set(&mut mechanism, *index, *value);
+        }
+        (mechanism, doubles)
+    }};
+}
+
+pub use in_all_numbers;
+
+/// Number of components of parameters and inputs.
+pub fn variables<S: Mechanism<f64, N, M>, const N: usize, const M: usize>(_: &S) -> usize {
+    S::VARIABLES.len()
 }
 
 #[cfg(test)]

@@ -80,9 +80,16 @@ pub trait MovedVariants {
 }
 
 /// A function from parameters and inputs by their indices to the variants of the mechanism that an expression makes:
-/// `variable!(Wiper::default())`.
+/// `variable!(Wiper::default())`. With the name of its type and its functions of the caller these may be in `f64` alone:
+/// `variable!(make(), Wiper, [lift])`.
 #[macro_export]
 macro_rules! variable {
+    ($make:expr, $kind:ident, [$($function:ident),* $(,)?] $(,)?) => {
+        |values: &[(usize, f64)]| {
+            let (mechanism, _) = $crate::erased::in_double::in_all_numbers!($make, $kind, [$($function),*], values);
+            $crate::erased::variations::variable(&mechanism)
+        }
+    };
     ($make:expr $(,)?) => {
         |values: &[(usize, f64)]| {
             let mut mechanism = $make;

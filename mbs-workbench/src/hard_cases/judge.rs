@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use crate::erased::timed_runs::Seen;
 use crate::erased::timed_steps::Placed;
-use crate::hard_cases::oracle::{Gap, Oracle, OracleState};
+use crate::hard_cases::oracle::{Gap, Oracle, OracleState, Slack};
 use crate::hard_cases::variation::Random;
 use crate::hard_cases::verdict::larger;
 
@@ -71,7 +71,7 @@ pub fn exceeds(value: f64, bound: f64) -> bool {
 /// A state that is judged.
 pub fn of_moved(seen: &Seen) -> OracleState {
     let Seen { t, q, qd, qdd, lambda, states, .. } = seen.clone();
-    OracleState { t, q, qd, qdd, lambda, states }
+    OracleState { t, q, qd, qdd, lambda, states, ..OracleState::default() }
 }
 
 /// A state that is judged, of a motion that drives prescribe.
@@ -99,7 +99,7 @@ pub fn judge(
     }
     rows(run, oracle, scales, bounds, &mut found);
     if bounds.is_shown {
-        velocities([run, fine], oracle.turns(), scales, bounds, &mut found);
+        velocities([run, fine], (oracle.turns(), oracle.has_impacts()), scales, bounds, &mut found);
     } else {
         found
             .not_made
@@ -111,6 +111,9 @@ pub fn judge(
             energy([run, fine], oracle, bounds, &mut found);
         }
     }
+    if let Some(words) = oracle.contradiction() {
+        found.fault(words);
+    }
     found
 }
 
@@ -118,6 +121,12 @@ pub fn judge(
 fn looks(run: &[OracleState]) -> impl Iterator<Item = &OracleState> {
     let stride = run.len().saturating_sub(1).div_ceil(LOOKS - 1).max(1);
     run.iter().step_by(stride)
+}
+
+/// Largest rates and accelerations of a run.
+fn paces(run: &[OracleState], scales: &[f64]) -> [f64; 2] {
+    let pace = run.iter().map(|state| extent(&state.qd, scales)).fold(0.0, f64::max);
+    [pace, run.iter().map(|state| extent(&state.qdd, scales)).fold(pace * pace, f64::max)]
 }
 
 /// Φ, Φ̇ and Φ̈ are 0.
@@ -130,8 +139,7 @@ fn rows(run: &[OracleState], oracle: &Oracle, scales: &[f64], bounds: Bounds, fo
             Err(gap) => return found.gap("rows", gap),
         }
     }
-    let pace = run.iter().map(|state| extent(&state.qd, scales)).fold(0.0, f64::max);
-    let push = run.iter().map(|state| extent(&state.qdd, scales)).fold(pace * pace, f64::max);
+    let [pace, push] = paces(run, scales);
     for state in looks(run) {
         let rows = match oracle.rows(state) {
             Ok(rows) => rows,
@@ -167,7 +175,7 @@ pub fn less_turns(angle: f64) -> f64 {
 /// springs small errors of q are large ones of q̈.
 fn velocities(
     [run, fine]: [&[OracleState]; 2],
-    turns: &[bool],
+    (turns, has_impacts): (&[bool], bool),
     scales: &[f64],
     bounds: Bounds,
     found: &mut Judgement,
@@ -210,10 +218,11 @@ fn velocities(
             .push("velocities against positions: the steps are too long to integrate q̇".to_string());
     }
     over.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // A kink between two instants is met by few of them, a wrong velocity by all.
-    if let Some((over, miss)) = over.get(over.len() / 2).filter(|(over, _)| exceeds(*over, 1.0)) {
+    // A kink between two instants is met by few of them, impacts by many, a wrong velocity by all.
+    let (share, words) = if has_impacts { (8, "most") } else { (2, "half") };
+    if let Some((over, miss)) = over.get(over.len() / share).filter(|(over, _)| exceeds(*over, 1.0)) {
         found.fault(format!(
-            "q and the integral of q̇ differ by {} in half of the intervals, {over:.0} times what the steps explain",
+            "q and the integral of q̇ differ by {} in {words} of the intervals, {over:.0} times what the steps explain",
             digits(*miss)
         ));
     }
@@ -235,7 +244,16 @@ fn balance(
 ) {
     let mut random = Random::of(seed ^ 0xba1a);
     let mut worst: Vec<(f64, f64)> = Vec::new();
+    let slack = Slack { rows: bounds.rows, forces: bounds.balance, pace: paces(run, scales) };
+    let (mut broken, mut is_shared) = (Vec::new(), false);
     for state in looks(run) {
+        let held = match oracle.held(state, scales, slack) {
+            Ok(held) => held,
+            Err(gap) => return found.gap("equations of motion", gap),
+        };
+        is_shared |= held.is_shared;
+        broken.extend(held.broken.into_iter().map(|words| format!("{words} at t = {:.4} s", state.t)));
+        let state = &OracleState { held: held.forces, ..state.clone() };
         let w: Vec<f64> = scales
             .iter()
             .map(|scale| scale * random.between(0.5, 1.0) * if random.index(2) == 0 { 1.0 } else { -1.0 })
@@ -250,6 +268,13 @@ fn balance(
             Ok(balance) => worst.push((balance.open(), state.t)),
             Err(gap) => return found.gap("equations of motion", gap),
         }
+    }
+    if is_shared {
+        found.not_made.push("laws of forces that several contacts or frictions share".to_string());
+    }
+    // At a change of contact or of sticking an instant may belong to both sides.
+    if let Some(words) = broken.get(2) {
+        found.fault(words.clone());
     }
     worst.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Next to a singular position multipliers are cut: two looks may be there.
@@ -273,6 +298,17 @@ fn energy([run, fine]: [&[OracleState]; 2], oracle: &Oracle, bounds: Bounds, fou
         Ok(both) => both,
         Err(gap) => return found.gap("energy", gap),
     };
+    if oracle.has_impacts() {
+        let driven: Result<Vec<bool>, Gap> = looks(run).map(|state| oracle.drives_contacts(state)).collect();
+        match driven {
+            Ok(driven) if driven.contains(&true) => {
+                let words = "energy: impacts on contacts that the time moves may bring it in".to_string();
+                return found.not_made.push(words);
+            }
+            Ok(_) => {}
+            Err(gap) => return found.gap("energy", gap),
+        }
+    }
     let doubts: Vec<f64> = all.iter().zip(&fine).map(|(a, b)| (a.1[1] - b.1[1]).abs()).collect();
     let doubt = |from: usize| {
         let largest = doubts.iter().skip(from).take(5).fold(0.0, |largest: f64, doubt| largest.max(*doubt));
@@ -291,18 +327,29 @@ fn energy([run, fine]: [&[OracleState]; 2], oracle: &Oracle, bounds: Bounds, fou
         .map(|(from, five)| {
             let [a, b, c, d, e] = five else { return (0.0, 0.0) };
             let work = simpson(a, b, c) + simpson(c, d, e);
-            let explained = 2.0 * (simpson(a, c, e) - work).abs() + 2.0 * (e.0 - a.0) * doubt(from);
-            let miss = (e.1[0] - a.1[0] - work).abs();
+            let mut explained = 2.0 * (simpson(a, c, e) - work).abs() + 2.0 * (e.0 - a.0) * doubt(from);
+            let mut miss = e.1[0] - a.1[0] - work;
+            // An impact takes energy, and powers jump in it: what is gained beside that is wrong in any interval.
+            if oracle.has_impacts() {
+                let powers = five.iter().map(|(_, [_, power])| *power);
+                let [most, least] =
+                    [powers.clone().fold(f64::MIN, f64::max), powers.fold(f64::MAX, f64::min)];
+                explained += (e.0 - a.0) * (most - least);
+                miss = miss.max(0.0);
+            }
+            let miss = miss.abs();
             (miss / (explained + (100.0 * bounds.estimate + bounds.rounding) * size), miss)
         })
         .collect();
     over.sort_by(|a, b| a.0.total_cmp(&b.0));
     // A contact between two instants is met by few of them, a wrong force by all.
-    if let Some((_, miss)) = over.get(over.len() / 2).filter(|(over, _)| exceeds(*over, 1.0)) {
+    let (index, words) = match oracle.has_impacts() {
+        true => (over.len().saturating_sub(1), "is gained in an interval, of"),
+        false => (over.len() / 2, "is what energy and work differ by in half of the intervals, of"),
+    };
+    if let Some((_, miss)) = over.get(index).filter(|(over, _)| exceeds(*over, 1.0)) {
         let [miss, size] = [*miss, size].map(digits);
-        found.fault(format!(
-            "energy and work differ by {miss} J of {size} J in half of the intervals, more than the steps explain"
-        ));
+        found.fault(format!("an energy of {miss} J {words} {size} J, more than the steps explain"));
     }
 }
 

@@ -1,5 +1,6 @@
 //! The study of a mechanism of one's own: what of it varies, and all its variants.
 
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use crate::erased::facade::AnyEquations;
@@ -8,7 +9,7 @@ use crate::hard_cases::driven::driven_outcomes;
 use crate::hard_cases::list::description::{Description, MethodKind};
 use crate::hard_cases::list::sampled::Encoder;
 use crate::hard_cases::moved::moved_outcomes;
-use crate::hard_cases::oracle::{Gap, Oracle};
+use crate::hard_cases::oracle::{Gap, Jet, Oracle};
 use crate::hard_cases::similarity::{Dimension, Similarity};
 use crate::hard_cases::variation::{Class, VariedParts};
 use crate::hard_cases::verdict::Outcome;
@@ -113,7 +114,13 @@ impl Own<'_> {
             values.iter().find(|(own, _)| *own == index).map(|(_, value)| *value)
         };
         let scene = Some(self.equations.scene()).filter(|scene| *scene != "AllEffects");
-        let oracle = Oracle::read(self.equations.source(), scene, &known)?;
+        let jets = self.equations.jets();
+        let functions = |name: &str| {
+            let index = self.equations.functions().iter().position(|entry| entry.name == name)?;
+            let jets = jets.clone();
+            Some(Rc::new(move |x| jets(index, x)) as Jet)
+        };
+        let oracle = Oracle::with_functions(self.equations.source(), scene, &known, &functions)?;
         let [text, code] = [
             [oracle.size(), oracle.row_count()],
             [self.equations.coordinates().len(), self.equations.rows().len()],

@@ -1,5 +1,7 @@
 use std::time::Duration;
 
+use mbs_runtime::Function;
+
 use crate::erased::erase::erase;
 use crate::erased::facade::AnyEquations;
 use crate::erased::variations::Variable;
@@ -69,6 +71,29 @@ mbs_runtime::mechanism! {
     constraint loop_ { crank*unit(phi) + 0.3m*unit(psi) == [x, 0]; }
     drive motor: phi == speed*t + 0.399;
     branch rod_ahead: cos(psi) > 0;
+}
+
+mbs_runtime::mechanism! {
+    /// A follower on a cam.
+    pub mechanism Follower;
+    function lift: m(rad), C3, periodic TAU;
+    coord theta: rad;
+    coord y: m = 20mm;
+    drive shaft: theta == 10 [rad/s]*t;
+    constraint face { y == 20mm + lift(theta); }
+}
+
+/// 5 mm times a sine, in `f64` alone, with this slope in place of 1.
+#[derive(Clone)]
+struct Wave(f64);
+
+impl Function<f64> for Wave {
+    const ORDER: usize = 3;
+
+    fn jet<const K: usize>(&self, x: f64) -> [f64; K] {
+        let all = [x.sin(), self.0 * x.cos(), -x.sin(), -x.cos()];
+        core::array::from_fn(|order| 5e-3 * all[order])
+    }
 }
 
 const METHODS: [MotionMethod; 3] = [
@@ -157,6 +182,19 @@ fn variants_of_a_motion_from_drives_are_right_and_a_late_motor_is_wrong() {
         "{}",
         all(&late)
     );
+}
+
+#[test]
+fn a_function_in_doubles_runs_in_all_numbers_and_one_that_contradicts_itself_is_wrong() {
+    let equations = erase(Follower::new(Wave(1.0))).into_equations();
+    let make = crate::variable!(Follower::new(Wave(1.0)), Follower, [lift]);
+    let result = result(make, equations.as_ref(), &[], 1.0);
+    assert_eq!(result.count(Verdict::Right), result.outcomes.len(), "{}", all(&result));
+    let equations = erase(Follower::new(Wave(1.001))).into_equations();
+    let make = crate::variable!(Follower::new(Wave(1.001)), Follower, [lift]);
+    let other = self::result(make, equations.as_ref(), &[], 1.0);
+    let told = other.outcomes.iter().filter(|outcome| outcome.reason.contains("`lift` contradicts itself"));
+    assert!(told.count() > other.outcomes.len() / 2, "{}", all(&other));
 }
 
 /// The pendulum as a case of the list, with a known value.

@@ -1,8 +1,10 @@
 //! The oracle of hard cases, which interprets texts, against the emitted code of every ready mechanism.
 
+use std::rc::Rc;
+
 use mbs_workbench::erased::facade::{AnyEquations, State};
 use mbs_workbench::erased::masses::Loads;
-use mbs_workbench::hard_cases::oracle::{Oracle, OracleState};
+use mbs_workbench::hard_cases::oracle::{Jet, Oracle, OracleState};
 
 use crate::CATALOGUE;
 
@@ -26,7 +28,13 @@ fn oracle(equations: &dyn AnyEquations) -> Result<Oracle, String> {
         equations.get(index)
     };
     let scene = Some(equations.scene()).filter(|scene| *scene != "AllEffects");
-    Oracle::read(equations.source(), scene, &known).map_err(|gap| gap.0)
+    let jets = equations.jets();
+    let functions = |name: &str| {
+        let index = equations.functions().iter().position(|entry| entry.name == name)?;
+        let jets = jets.clone();
+        Some(Rc::new(move |x| jets(index, x)) as Jet)
+    };
+    Oracle::with_functions(equations.source(), scene, &known, &functions).map_err(|gap| gap.0)
 }
 
 /// Largest difference of the oracle and the emitted functions, as a part of their terms; or what the oracle leaves out.
@@ -43,6 +51,7 @@ fn apart(equations: &dyn AnyEquations, oracle: &Oracle, noise: &mut Noise) -> Re
         qdd: state.qdd.clone(),
         lambda: loads.lambda.clone(),
         states,
+        ..OracleState::default()
     };
     let functions = equations.evaluate(&state);
     let rows = oracle.rows(&moving).expect("rows");
@@ -90,18 +99,18 @@ fn interpreted_texts_agree_with_emitted_code() {
         });
         match found {
             Ok(found) => {
-                assert!(found < 1e-11, "{}: {found:e}", card.name());
+                // The damping that a restitution gives is a root, found within 1e-9.
+                let bound = if equations.source().contains("approach") { 1e-9 } else { 1e-11 };
+                assert!(found < bound, "{}: {found:e}", card.name());
                 checked += 1;
             }
             Err(gap) => gaps.push(format!("{}: {gap}", card.name())),
         }
     }
-    // Functions of the caller are in no text. Modes of rigid contacts and of frictions that stick are in no state.
-    let is_known = |gap: &String| {
-        ["the caller's function", "contact with a restitution", "friction that sticks"]
-            .iter()
-            .any(|known| gap.contains(known))
-    };
+    // Forces of rigid contacts and of frictions that stick, and events of a motion, are in no state.
+    let words = ["which is not in the state", "which a motion alone knows"];
+    let is_known = |gap: &String| words.iter().any(|known| gap.contains(known));
+    println!("{checked} checked, left out: {gaps:#?}");
     assert!(gaps.iter().all(is_known), "{gaps:#?}");
-    assert!(checked >= 38, "{checked}, {gaps:#?}");
+    assert!(checked >= 47, "{checked}, {gaps:#?}");
 }

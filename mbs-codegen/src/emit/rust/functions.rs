@@ -139,6 +139,8 @@ pub fn bodies(
     outputs_text += &outputs(equations, &scope);
     let (phases, speeds) = phases::functions(equations, program, &bare);
     let mut phases = phases::turns(equations, model) + &phases::folds(equations, model) + &phases;
+    let orders = orders(model, &demands);
+    phases += &jets(&orders, &bare);
     if equations.dynamics.is_some() {
         phases += &signals::carry(model);
     }
@@ -174,7 +176,7 @@ pub fn bodies(
         frictions,
         remembered,
         kept_position: program.position.fields.len(),
-        orders: orders(model, &demands),
+        orders,
         parameters: emitter.parameters(
             &program.parameters,
             smooth_enough(&continuity::of_declarations(model, demands), &bare),
@@ -366,6 +368,27 @@ fn orders(model: &Model, demands: &[Demand]) -> Vec<u8> {
         }
     }
     orders
+}
+
+/// `jets`, where functions are declared: they as programs call them.
+fn jets(orders: &[u8], scope: &Scope<'_>) -> String {
+    if orders.is_empty() {
+        return String::new();
+    }
+    let mut arms = String::new();
+    for (index, order) in orders.iter().enumerate() {
+        let (kind, field, place) = scope.function(index);
+        let element = place.map_or_else(String::new, |place| format!("[{place}]"));
+        let count = u16::from(*order) + 1;
+        let _ = writeln!(
+            arms,
+            "{index} => __see(&<{kind} as __mbs::Function<T>>::jet::<{count}>(&{field}{element}, __x)),"
+        );
+    }
+    format!(
+        "fn jets(&self, __index: ::core::primitive::usize, __x: T, __see: impl ::core::ops::FnOnce(&[T])) {{\n\
+         match __index {{\n{arms}_ => {{}}\n}}\n}}\n"
+    )
 }
 
 /// Assertions at compile time that the types which the caller chose are smooth enough.

@@ -4,11 +4,14 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use mbs_codegen::syntax_tree::{Expression, Operation, Operator, SUFFIXES, Unit};
+use mbs_codegen::syntax_tree::{Expression, Operation, Operator, SUFFIXES, StatementKind, Unit};
 
+use super::curves::Curve;
 use super::functions;
+use super::laws::Laws;
+use super::mechanics::by_name;
 use super::number::Number;
-use super::tree::Round;
+use super::tree::{Placed, Round};
 
 /// A part of the language that the oracle does not evaluate, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,6 +74,14 @@ pub struct Names {
     pub moving: BTreeMap<String, Value>,
     /// `let`s by name; those of loops once a round.
     pub definitions: Rc<BTreeMap<String, Vec<Definition>>>,
+    /// The statements.
+    pub placed: Rc<Vec<Placed>>,
+    /// Deflections (m) of bristles by the places of their frictions among the statements.
+    pub bristles: BTreeMap<usize, f64>,
+    /// Functions of the caller.
+    pub laws: Rc<Laws>,
+    /// Curves in the order of the text.
+    pub curves: Rc<Vec<Curve>>,
     /// λ of the rows of each constraint and drive.
     pub lambda: BTreeMap<String, Vec<Number>>,
     /// The time.
@@ -96,6 +107,72 @@ impl<'a> Scope<'a> {
         Scope { names, rounds, depth: 0 }
     }
 
+    /// The same names in other rounds.
+    pub fn within<'b>(&self, rounds: &'b [Round]) -> Scope<'b>
+    where
+        'a: 'b,
+    {
+        Scope { names: self.names, rounds, depth: self.depth }
+    }
+
+    /// Functions of the caller.
+    pub fn laws(&self) -> &'a Laws {
+        &self.names.laws
+    }
+
+    /// Deflection (m) of the bristles of a friction by its place among the statements.
+    pub fn deflection(&self, index: usize) -> f64 {
+        self.names.bristles.get(&index).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Place among the statements of an element or a load, of those in loops the one of a number or of the same rounds.
+    fn element(&self, name: &str, number: Option<usize>) -> Option<usize> {
+        let is_it = |placed: &Placed| match &placed.kind {
+            StatementKind::Element { name: own, .. } | StatementKind::Load { name: own, .. } => {
+                own.text == name
+            }
+            _ => false,
+        };
+        let is_seen = |placed: &Placed| {
+            placed.rounds.len() <= self.rounds.len()
+                && placed.rounds.iter().zip(self.rounds).all(|(own, round)| own.id == round.id)
+        };
+        let mut all = self.names.placed.iter().enumerate().filter(|(_, placed)| is_it(placed));
+        let found = match number {
+            Some(number) => all.nth(number),
+            None => all.find(|(_, placed)| is_seen(placed)),
+        };
+        found.map(|(index, _)| index)
+    }
+
+    /// Place among the statements of the element whose normal force is the whole of an expression.
+    pub fn referred(&self, expression: &Expression) -> Option<usize> {
+        let (last, number) = expression.code.split_last()?;
+        let Operation::Reference { function, targets } = &last.operation else { return None };
+        let [target] = targets.as_slice() else { return None };
+        let number = match target.indexed {
+            true => Some(value(&Expression { code: number.to_vec() }, self).ok()?.count().ok()?),
+            false => None,
+        };
+        matches!(function.as_str(), "normal" | "force").then(|| self.element(&target.name.text, number))?
+    }
+
+    /// The statement at a place, and its names.
+    pub fn statement(&self, index: usize) -> Option<(&'a StatementKind, Scope<'a>)> {
+        let placed = self.names.placed.get(index)?;
+        Some((&placed.kind, Scope { names: self.names, rounds: &placed.rounds, depth: self.depth + 1 }))
+    }
+
+    /// Number of the curve `name` among all.
+    pub fn curve(&self, name: &str) -> Option<usize> {
+        let is_seen = |curve: &Curve| {
+            curve.name == name
+                && curve.rounds.len() <= self.rounds.len()
+                && curve.rounds.iter().zip(self.rounds).all(|(own, round)| own.id == round.id)
+        };
+        self.names.curves.iter().rposition(is_seen)
+    }
+
     fn name(&self, name: &str) -> Result<Value, Gap> {
         if let Some(round) = self.rounds.iter().rev().find(|round| round.variable == name) {
             return Ok(Value::scalar(Number::still(round.count as f64)));
@@ -108,6 +185,10 @@ impl<'a> Scope<'a> {
             "PI" => return Ok(Value::scalar(Number::still(core::f64::consts::PI))),
             "TAU" => return Ok(Value::scalar(Number::still(core::f64::consts::TAU))),
             _ => {}
+        }
+        // The name of a curve stands for its number, which its functions take.
+        if let Some(index) = self.curve(name) {
+            return Ok(Value::scalar(Number::still(index as f64)));
         }
         // Of the names of a text without faults those of events and of what they latch are left.
         let all = self.names.definitions.get(name);
@@ -162,8 +243,21 @@ pub fn value(expression: &Expression, scope: &Scope<'_>) -> Result<Value, Gap> {
                 let (b, a) = (pop(&mut stack)?, pop(&mut stack)?);
                 joined(*operator, a, b)?
             }
+            Operation::Call { function, order, indexed, .. } if scope.laws().has(function) => {
+                let x = pop(&mut stack)?.number()?;
+                let index = if *indexed { Some(pop(&mut stack)?.count()?) } else { None };
+                Value::scalar(scope.laws().call(function, index, usize::from(*order), x)?)
+            }
             Operation::Call { function, indexed: true, .. } => {
                 return Err(Gap(format!("`{function}` of the caller")));
+            }
+            Operation::Call { function, order: 0, arguments: 2, .. }
+                if matches!(function.as_str(), "distance" | "outward" | "place") =>
+            {
+                let (number, argument) = (pop(&mut stack)?.count()?, pop(&mut stack)?);
+                let curve = scope.names.curves.get(number);
+                let curve = curve.ok_or_else(|| Gap(format!("`{function}` of no curve")))?;
+                curve.call(function, &argument, scope)?
             }
             Operation::Call { function, order: 0, arguments, indexed: false } => {
                 let arguments = pop_many(&mut stack, *arguments)?;
@@ -213,6 +307,11 @@ pub fn value(expression: &Expression, scope: &Scope<'_>) -> Result<Value, Gap> {
             Operation::Reference { function, targets } => {
                 let [target] = targets.as_slice() else { return Err(Gap(format!("`{function}`"))) };
                 let index = if target.indexed { Some(pop(&mut stack)?.count()?) } else { None };
+                let own = Scope { rounds: &rounds, ..*scope };
+                if let Some(element) = own.element(&target.name.text, index) {
+                    stack.push(by_name(function, element, &own)?);
+                    continue;
+                }
                 let rows = scope.names.lambda.get(&target.name.text);
                 let rows = rows.ok_or_else(|| Gap(format!("`{function}({})`", target.name.text)))?;
                 let sign = match function.as_str() {

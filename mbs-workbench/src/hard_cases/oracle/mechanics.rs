@@ -16,6 +16,35 @@ pub struct Along {
     pub place: Number,
 }
 
+/// A force that the text does not give, with its place and its law.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// Name in the text.
+    pub name: String,
+    /// Gap or length.
+    pub place: Number,
+    /// Its law.
+    pub law: Law,
+}
+
+/// Law of a force that the text does not give.
+#[derive(Clone, Copy, Debug)]
+pub enum Law {
+    /// That of a rigid contact.
+    Contact,
+    /// That of a friction that sticks: coefficients at its speed and at rest, and c.
+    Friction { normal: Normal, sliding: f64, holding: f64, viscous: f64 },
+}
+
+/// Normal force of a friction.
+#[derive(Clone, Copy, Debug)]
+pub enum Normal {
+    /// A force (N).
+    Force(f64),
+    /// That of a rigid contact, by its place among all such laws.
+    Of(usize),
+}
+
 /// Energies and forces of a state, one entry each a statement.
 #[derive(Clone, Debug, Default)]
 pub struct Mechanics {
@@ -27,6 +56,8 @@ pub struct Mechanics {
     pub forces: Vec<Along>,
     /// Functions of dissipation (W).
     pub dissipation: Vec<Dual>,
+    /// Rigid contacts and frictions that stick.
+    pub held: Vec<Held>,
 }
 
 /// A body's mass (kg) with the components of its centre of mass (m).
@@ -37,21 +68,33 @@ pub fn mechanics(placed: &[Placed], names: &Names) -> Result<Mechanics, Gap> {
     let mut found = Mechanics::default();
     let mut heavy: Vec<Heavy> = Vec::new();
     let mut fields: Vec<Vec<Number>> = Vec::new();
-    for Placed { kind, rounds } in placed {
+    for (index, Placed { kind, rounds }) in placed.iter().enumerate() {
         let scope = Scope::of(names, rounds);
         match kind {
-            StatementKind::Element { kind, fields: given, .. } => {
+            StatementKind::Element { kind, name, fields: given } => {
                 let fields_of = Fields { given, scope };
                 match kind {
                     Element::Body => heavy.push(body(&fields_of, &mut found)?),
                     Element::Gravity => fields.push(fields_of.vector("acceleration")?),
-                    Element::Tsda => tension(&fields_of, &mut found)?,
+                    Element::Tsda => {
+                        let along = length(&fields_of)?;
+                        sprung(&fields_of, along, ["length", "actuator"], &mut found)?;
+                    }
                     Element::Rsda => {
                         let angle = fields_of.required("angle")?;
                         sprung(&fields_of, angle, ["rest", "torque"], &mut found)?;
                     }
-                    Element::Friction => friction(&fields_of, &mut found)?,
-                    Element::Contact => contact(&fields_of, &mut found)?,
+                    Element::Friction => match friction(&fields_of, index)? {
+                        Some(along) => found.forces.push(along),
+                        None => found.held.push(sticking(&name.text, &fields_of, placed)?),
+                    },
+                    Element::Contact => match contact(&fields_of)? {
+                        Some(along) => found.forces.push(along),
+                        None => {
+                            let (name, place) = (name.text.clone(), fields_of.required("gap")?);
+                            found.held.push(Held { name, place, law: Law::Contact });
+                        }
+                    },
                 }
             }
             StatementKind::Load { kind, value: force, on, .. } => {
@@ -86,9 +129,9 @@ pub fn mechanics(placed: &[Placed], names: &Names) -> Result<Mechanics, Gap> {
 }
 
 /// Fields of an element.
-struct Fields<'a> {
-    given: &'a [Field],
-    scope: Scope<'a>,
+pub struct Fields<'a> {
+    pub given: &'a [Field],
+    pub scope: Scope<'a>,
 }
 
 impl Fields<'_> {
@@ -98,6 +141,25 @@ impl Fields<'_> {
 
     fn scalar(&self, name: &str) -> Result<Option<Number>, Gap> {
         self.expression(name).map(|expression| value(expression, &self.scope)?.number()).transpose()
+    }
+
+    /// μ at the speed of a friction, and μₛ.
+    fn coefficients(&self) -> Result<[f64; 2], Gap> {
+        let sliding = self.required("coefficient")?.value.v;
+        let holding = self.scalar("sticks")?.map_or(sliding, |sticks| sticks.value.v.max(sliding));
+        let share = match self.scalar("speed")? {
+            Some(speed) => (-(self.required("along")?.rate.v / speed.value.v).powi(2)).exp(),
+            None => 0.0,
+        };
+        Ok([sliding + (holding - sliding) * share, holding])
+    }
+
+    /// z and ż = ṡ − |ṡ| z μ/(δ g(ṡ)) of bristles.
+    fn bristles(&self, index: usize, bend: f64) -> Result<(f64, f64), Gap> {
+        let (speed, z) = (self.required("along")?.rate.v, self.scope.deflection(index));
+        let [level, _] = self.coefficients()?;
+        let sliding = self.required("coefficient")?.value.v;
+        Ok((z, speed - speed.abs() * z * sliding / (bend * level)))
     }
 
     fn required(&self, name: &str) -> Result<Number, Gap> {
@@ -161,36 +223,121 @@ fn sprung(
     Ok(())
 }
 
-fn tension(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
+fn length(fields: &Fields<'_>) -> Result<Number, Gap> {
     let (from, to) = (fields.vector("from")?, fields.vector("to")?);
     let length = from.iter().zip(&to).map(|(from, to)| *to - *from).reduce(Number::hypot);
-    let length = length.ok_or_else(|| Gap("a tension between no points".to_string()))?;
-    sprung(fields, length, ["length", "actuator"], found)
+    length.ok_or_else(|| Gap("a tension between no points".to_string()))
 }
 
-/// −(μ |N| tanh(ṡ/v₀) + c ṡ).
-fn friction(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
-    if fields.scalar("sticks")?.is_some() {
-        return Err(Gap("friction that sticks".to_string()));
+/// k (x − x₀) + c ẋ + f along a length or an angle.
+fn pull(fields: &Fields<'_>, place: Number, [rest, drive]: [&str; 2]) -> Result<Along, Gap> {
+    let of = |name: &str| Ok(fields.scalar(name)?.unwrap_or_default().value.v);
+    let extension = place.value.v - of(rest)?;
+    let force = of("stiffness")? * extension + of("damping")? * place.rate.v + of(drive)?;
+    Ok(Along { force: -force, place })
+}
+
+/// A value whose motion is not known: forces are values alone.
+fn unknown(value: f64) -> Number {
+    let none = Dual::still(f64::NAN);
+    Number { value: Dual { v: value, a: f64::NAN, b: f64::NAN, c: f64::NAN }, rate: none }
+}
+
+/// `force(…)`, `normal(…)`, `power(…)`, `slip(…)`, `gap(…)` or `deflection(…)` of the element or load at a place among the statements.
+pub fn by_name(function: &str, index: usize, scope: &Scope<'_>) -> Result<Value, Gap> {
+    let none = |name: &str| Gap(format!("`{function}({name})`"));
+    let Some((kind, scope)) = scope.statement(index) else { return Err(none("")) };
+    let (kind, name, given) = match kind {
+        StatementKind::Element { kind, name, fields } => (kind, name, fields),
+        StatementKind::Load { name, value: force, on, .. } => {
+            let (force, on) = (value(force, &scope)?, value(on, &scope)?);
+            let values = force.items.iter().map(|part| part.value.v);
+            return match function {
+                "force" => Ok(Value { items: values.map(unknown).collect(), shape: force.shape }),
+                "power" if force.items.len() == on.items.len() => {
+                    let power = values.zip(&on.items).map(|(force, place)| force * place.rate.v).sum();
+                    Ok(Value::scalar(unknown(power)))
+                }
+                _ => Err(none(&name.text)),
+            };
+        }
+        _ => return Err(none("")),
+    };
+    let fields = Fields { given, scope };
+    let (along, sign) = match kind {
+        Element::Tsda => (Some(pull(&fields, length(&fields)?, ["length", "actuator"])?), -1.0),
+        Element::Rsda => (Some(pull(&fields, fields.required("angle")?, ["rest", "torque"])?), -1.0),
+        Element::Friction => (friction(&fields, index)?, 1.0),
+        Element::Contact => (contact(&fields)?, 1.0),
+        Element::Body | Element::Gravity => return Err(none(&name.text)),
+    };
+    let place = match kind {
+        Element::Contact => fields.required("gap")?,
+        _ => along.map_or_else(|| fields.required("along"), |along| Ok(along.place))?,
+    };
+    Ok(Value::scalar(match (function, along) {
+        ("gap", _) => place,
+        ("slip", _) => place.der(),
+        ("deflection", _) => unknown(fields.scope.deflection(index)),
+        ("force" | "normal", Some(along)) => unknown(sign * along.force),
+        ("power", Some(along)) => unknown(along.force * place.rate.v),
+        _ => return Err(none(&name.text)),
+    }))
+}
+
+/// −(μ |N| tanh(ṡ/v₀) + c ṡ), or −(μ |N| (z/δ + d ż) + c ṡ) with bristles; none where it sticks.
+fn friction(fields: &Fields<'_>, index: usize) -> Result<Option<Along>, Gap> {
+    let place = fields.required("along")?;
+    let [normal, coefficient] = ["normal", "coefficient"];
+    let viscous = fields.scalar("viscous")?.unwrap_or_default().value.v * place.rate.v;
+    if let Some(bend) = fields.scalar("bristles")? {
+        let limit = fields.required(coefficient)?.value.v * fields.required(normal)?.value.v.abs();
+        let damping = fields.scalar("damping")?.unwrap_or_default().value.v;
+        let (z, rate) = fields.bristles(index, bend.value.v)?;
+        let force = limit * (z / bend.value.v + damping * rate) + viscous;
+        return Ok(Some(Along { force: -force, place }));
     }
-    if fields.scalar("bristles")?.is_some() {
-        return Err(Gap("friction with bristles".to_string()));
+    if fields.expression("sticks").is_some() {
+        return Ok(None);
     }
-    let along = fields.required("along")?;
-    let [normal, coefficient, speed] = ["normal", "coefficient", "speed"].map(|name| fields.required(name));
+    let [normal, coefficient, speed] = [normal, coefficient, "speed"].map(|name| fields.required(name));
     let limit = coefficient?.value.v * normal?.value.v.abs();
-    let viscous = fields.scalar("viscous")?.unwrap_or_default().value.v;
-    let force = limit * (along.rate.v / speed?.value.v).tanh() + viscous * along.rate.v;
-    found.forces.push(Along { force: -force, place: along });
-    Ok(())
+    let force = limit * (place.rate.v / speed?.value.v).tanh() + viscous;
+    Ok(Some(Along { force: -force, place }))
 }
 
-/// k p₀ (p/p₀)ⁿ max(1 − d ġ, 0) with the depth p = max(−g, 0).
-fn contact(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
-    if fields.scalar("restitution")?.is_some() {
-        return Err(Gap("a contact with a restitution".to_string()));
-    }
-    let (gap, stiffness) = (fields.required("gap")?, fields.required("stiffness")?.value.v);
+/// The law of a friction that sticks: μ + (μₛ − μ) exp(−(ṡ/v)²) at its speed.
+fn sticking(name: &str, fields: &Fields<'_>, placed: &[Placed]) -> Result<Held, Gap> {
+    let (place, [sliding, holding]) = (fields.required("along")?, fields.coefficients()?);
+    let normal = match fields.expression("normal").and_then(|normal| fields.scope.referred(normal)) {
+        Some(contact) if is_rigid(&placed[contact].kind) => {
+            let before = placed[..contact].iter().filter(|placed| is_held(&placed.kind)).count();
+            Normal::Of(before)
+        }
+        _ => Normal::Force(fields.required("normal")?.value.v),
+    };
+    let viscous = fields.scalar("viscous")?.unwrap_or_default().value.v;
+    Ok(Held { name: name.to_string(), place, law: Law::Friction { normal, sliding, holding, viscous } })
+}
+
+/// `true` for a contact without stiffness.
+pub fn is_rigid(kind: &StatementKind) -> bool {
+    let has = |fields: &[Field], name: &str| fields.iter().any(|field| field.name.text == name);
+    matches!(kind, StatementKind::Element { kind: Element::Contact, fields, .. } if !has(fields, "stiffness"))
+}
+
+/// `true` for a contact without stiffness and a friction that sticks.
+fn is_held(kind: &StatementKind) -> bool {
+    let has = |fields: &[Field], name: &str| fields.iter().any(|field| field.name.text == name);
+    is_rigid(kind)
+        || matches!(kind, StatementKind::Element { kind: Element::Friction, fields, .. }
+            if has(fields, "sticks") && !has(fields, "bristles"))
+}
+
+/// k p₀ (p/p₀)ⁿ max(1 − d ġ, 0) with the depth p = max(−g, 0); none where it is rigid.
+fn contact(fields: &Fields<'_>) -> Result<Option<Along>, Gap> {
+    let gap = fields.required("gap")?;
+    let Some(stiffness) = fields.scalar("stiffness")? else { return Ok(None) };
     let depth = (-gap.value.v).max(0.0);
     let depth = match (fields.scalar("exponent")?, fields.scalar("depth")?) {
         (Some(exponent), Some(reference)) => {
@@ -199,10 +346,25 @@ fn contact(fields: &Fields<'_>, found: &mut Mechanics) -> Result<(), Gap> {
         }
         _ => depth,
     };
-    let damping = fields.scalar("damping")?.unwrap_or_default().value.v;
+    let damping = match fields.scalar("restitution")? {
+        Some(restitution) => restituted(restitution.value.v) / fields.required("approach")?.value.v,
+        None => fields.scalar("damping")?.unwrap_or_default().value.v,
+    };
     let share = (1.0 - damping * gap.rate.v).max(0.0);
-    found.forces.push(Along { force: stiffness * depth * share, place: gap });
-    Ok(())
+    Ok(Some(Along { force: stiffness.value.v * depth * share, place: gap }))
+}
+
+/// The root c in 0 to 1/e of c − ln(1 + c) = −e c − ln(1 − e c), by bisection: what a contact makes of the speed v₀ is e v₀.
+fn restituted(e: f64) -> f64 {
+    let e = e.clamp(1e-6, 1.0);
+    // Both sides are c²/2 for e = 1 and a small c.
+    let open = |c: f64| (c - c.ln_1p()) + e * c + (-e * c).ln_1p();
+    let (mut low, mut high) = (0.0, 1.0 / e);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if open(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    if e == 1.0 { 0.0 } else { low }
 }
 
 fn load(kind: Load, force: &Value, on: Value, found: &mut Mechanics) -> Result<(), Gap> {

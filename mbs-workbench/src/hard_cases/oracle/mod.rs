@@ -4,8 +4,11 @@
 //! energies and forces are read and computed here. So no fault of resolving, differentiation, structure or emission is shared. It
 //! shares the reader of the language. A part of the language that it does not evaluate is a [`Gap`], which is told.
 
+mod curves;
 mod evaluation;
 mod functions;
+mod held;
+mod laws;
 mod mechanics;
 mod number;
 mod quantities;
@@ -21,9 +24,13 @@ use mbs_codegen::syntax_tree::{
     Element, Equation, Expression, Item, Operation, Operator, StatementKind, Type,
 };
 
+use self::curves::Curve;
 pub use self::evaluation::Gap;
 use self::evaluation::{Definition, Names, Scope, Value, joined, value};
 use self::functions::dot;
+pub use self::held::{HeldForces, Slack};
+pub use self::laws::Jet;
+use self::laws::Laws;
 use self::mechanics::mechanics;
 use self::number::{Dual, Number};
 pub use self::state::{Balance, OracleRow, OracleState, Quantity};
@@ -40,7 +47,7 @@ enum Along<'a> {
 /// A mechanism as its text says it.
 #[derive(Debug)]
 pub struct Oracle {
-    placed: Vec<Placed>,
+    placed: Rc<Vec<Placed>>,
     /// Names and shapes of coordinates and of first-order states.
     coordinates: Vec<(String, Vec<usize>)>,
     states: Vec<(String, Vec<usize>)>,
@@ -49,8 +56,13 @@ pub struct Oracle {
     /// Constants, parameters and inputs.
     given: Rc<BTreeMap<String, Value>>,
     definitions: Rc<BTreeMap<String, Vec<Definition>>>,
+    /// Functions of the caller, and curves.
+    laws: Rc<Laws>,
+    curves: Rc<Vec<Curve>>,
     /// Names of constraints and drives, with the indices of their rows.
     groups: Vec<(String, core::ops::Range<usize>)>,
+    /// Frictions with bristles by their places in the text: each has a state behind those of the text.
+    bristled: Vec<usize>,
     /// Bodies whose Euler parameters are coordinates, by their places in the text: each has a row of its own, e·e = 1.
     turning: Vec<usize>,
 }
@@ -73,10 +85,24 @@ impl Oracle {
     /// # Errors
     /// The part of the text that cannot be read.
     pub fn read(source: &str, scene: Option<&str>, known: &dyn Fn(&str) -> Option<f64>) -> Result<Self, Gap> {
+        Oracle::with_functions(source, scene, known, &|_| None)
+    }
+
+    /// The same with functions of the caller by their names, `lift` or `lift[0]`.
+    ///
+    /// # Errors
+    /// The part of the text that cannot be read.
+    pub fn with_functions(
+        source: &str,
+        scene: Option<&str>,
+        known: &dyn Fn(&str) -> Option<f64>,
+        functions: &dyn Fn(&str) -> Option<Jet>,
+    ) -> Result<Self, Gap> {
         let placed = unrolled(source, scene).map_err(Gap)?;
         let mut names = Names::default();
         let (mut coordinates, mut states, mut turns) = (Vec::new(), Vec::new(), Vec::new());
         let mut definitions: BTreeMap<String, Vec<Definition>> = BTreeMap::new();
+        let (mut laws, mut curves) = (Laws::default(), Vec::new());
         for Placed { kind, rounds } in &placed {
             match kind {
                 StatementKind::Const { name, value: expression, .. } => {
@@ -106,21 +132,47 @@ impl Oracle {
                     let definition = Definition { rounds: rounds.clone(), value: value.clone() };
                     definitions.entry(name.text.clone()).or_default().push(definition);
                 }
-                StatementKind::Function { name, .. } => {
-                    return Err(Gap(format!("the caller's function `{}`", name.text)));
+                StatementKind::Function { name, signature } => {
+                    let name = &name.text;
+                    let labels = match shape(&signature.value, &names)?.first() {
+                        Some(length) => (0..*length).map(|index| format!("{name}[{index}]")).collect(),
+                        None => vec![name.clone()],
+                    };
+                    for label in labels {
+                        let law = functions(&label);
+                        let law = law.ok_or_else(|| Gap(format!("the caller's function `{label}`")))?;
+                        laws.known.insert(label, law);
+                    }
                 }
+                StatementKind::Curve { name, centre, radius, number } => curves.push(Curve {
+                    name: name.text.clone(),
+                    rounds: rounds.clone(),
+                    centre: centre.clone(),
+                    radius: radius.clone(),
+                    number: number.clone(),
+                }),
                 _ => {}
             }
         }
         let (given, definitions) = (Rc::new(names.moving), Rc::new(definitions));
+        let is_bristled = |(index, placed): (usize, &Placed)| {
+            let StatementKind::Element { kind: Element::Friction, fields, .. } = &placed.kind else {
+                return None;
+            };
+            fields.iter().any(|field| field.name.text == "bristles").then_some(index)
+        };
+        let bristled = placed.iter().enumerate().filter_map(is_bristled).collect();
         let mut oracle = Oracle {
-            placed,
+            placed: Rc::new(placed),
             coordinates,
             states,
             turns,
             given,
             definitions,
+            laws: Rc::new(laws),
+            curves: Rc::new(curves),
             groups: Vec::new(),
+            bristled,
             turning: Vec::new(),
         };
         // A first look at a state without two equal numbers tells which bodies turn with coordinates, and how many rows there are.
@@ -156,6 +208,11 @@ impl Oracle {
         }
     }
 
+    /// A function of the caller whose derivatives contradict its values, where one was called so far.
+    pub fn contradiction(&self) -> Option<String> {
+        self.laws.fault()
+    }
+
     /// Number of rows.
     pub fn row_count(&self) -> usize {
         self.groups.last().map_or(0, |(_, rows)| rows.end)
@@ -166,6 +223,9 @@ impl Oracle {
         let mut names = Names {
             given: self.given.clone(),
             definitions: self.definitions.clone(),
+            placed: self.placed.clone(),
+            laws: self.laws.clone(),
+            curves: self.curves.clone(),
             time: Number { value: time, rate: Dual::still(1.0) },
             ..Names::default()
         };
@@ -196,6 +256,10 @@ impl Oracle {
             names.moving.insert(name.clone(), Value { shape: shape.clone(), items });
             k += length;
         }
+        let deflection = |(place, index): (usize, usize)| {
+            (index, state.states.get(k + place).copied().unwrap_or(f64::NAN))
+        };
+        names.bristles = self.bristled.iter().copied().enumerate().map(deflection).collect();
         let multiplier = |row| Number::still(state.lambda.get(row).copied().unwrap_or(f64::NAN));
         for (group, rows) in &self.groups {
             names.lambda.entry(group.clone()).or_default().extend(rows.clone().map(multiplier));
@@ -246,9 +310,13 @@ impl Oracle {
                             let found = residual(equation, &Scope::of(names, rounds))?;
                             show(&name.text, found.items.into_iter().map(|number| (number, true)).collect());
                         }
-                        // A row that is left out would be one that always holds.
-                        if let Item::On { curve, .. } = item {
-                            return Err(Gap(format!("the curve `{}`", curve.text)));
+                        if let Item::On { point, curve, .. } = item {
+                            let scope = Scope::of(names, rounds);
+                            // A row that is left out would be one that always holds.
+                            let found = scope.curve(&curve.text).and_then(|index| names.curves.get(index));
+                            let found = found.ok_or_else(|| Gap(format!("the curve `{}`", curve.text)))?;
+                            let row = found.row(&value(point, &scope)?, &scope)?;
+                            show(&name.text, vec![(row, true)]);
                         }
                         Ok(())
                     })?;
@@ -322,6 +390,12 @@ impl Oracle {
         place.potential.iter().for_each(|potential| balance.add(potential.a));
         pace.dissipation.iter().for_each(|dissipation| balance.add(dissipation.a));
         place.forces.iter().for_each(|along| balance.add(-along.force * along.place.value.a));
+        for (index, held) in place.held.iter().enumerate() {
+            let force = state.held.get(index);
+            let force = force
+                .ok_or_else(|| Gap(format!("the force of `{}`, which is not in the state", held.name)))?;
+            balance.add(-force * held.place.value.a);
+        }
         self.each_row(&at, &mut |_, rows, found| {
             for ((number, _), row) in found.iter().zip(rows) {
                 balance.add(state.lambda.get(row).copied().unwrap_or(f64::NAN) * number.value.a);
@@ -356,13 +430,6 @@ impl Oracle {
         Ok(change)
     }
 
-    /// `true` with contacts, whose closing and opening end steps.
-    pub fn has_contacts(&self) -> bool {
-        let is =
-            |placed: &Placed| matches!(&placed.kind, StatementKind::Element { kind: Element::Contact, .. });
-        self.placed.iter().any(is)
-    }
-
     /// Kinetic and potential energy, T + V (J), and its rate (W) that velocities and accelerations give it.
     ///
     /// # Errors
@@ -380,7 +447,7 @@ impl Oracle {
     pub fn branches(&self, state: &OracleState) -> Result<Vec<(String, f64)>, Gap> {
         let names = self.names(state, Along::Nothing);
         let mut found = Vec::new();
-        for Placed { kind, rounds } in &self.placed {
+        for Placed { kind, rounds } in self.placed.iter() {
             if let StatementKind::Branch { name, at_start: false, larger, smaller } = kind {
                 let scope = Scope::of(&names, rounds);
                 let [larger, smaller] = [larger, smaller].map(|side| value(side, &scope)?.number());
@@ -388,17 +455,6 @@ impl Oracle {
             }
         }
         Ok(found)
-    }
-
-    /// `true` with masses or forces.
-    pub fn is_dynamic(&self) -> bool {
-        let is = |placed: &Placed| {
-            matches!(
-                placed.kind,
-                StatementKind::Element { .. } | StatementKind::Load { .. } | StatementKind::Energy { .. }
-            )
-        };
-        self.placed.iter().any(is)
     }
 }
 

@@ -159,6 +159,11 @@ impl Number {
         Number { value, rate: if moves { slope(self.value) * self.rate } else { Dual::default() } }
     }
 
+    /// A function of it, from its value and its first three derivatives.
+    pub fn through(self, [value, first, second, third]: [f64; 4]) -> Self {
+        self.of(self.value.chain([value, first, second]), |x| x.chain([first, second, third]))
+    }
+
     /// A function of one argument by its name; `None` where there is none.
     pub fn function(self, name: &str) -> Option<Self> {
         let one = Dual::still(1.0);

@@ -1,8 +1,9 @@
-//! Coordinates and outputs by their names, for values that are known beforehand.
+//! Coordinates and outputs by their names, for values that are known beforehand; kinds of parts that a text has.
 
-use mbs_codegen::syntax_tree::StatementKind;
+use mbs_codegen::syntax_tree::{Element, StatementKind};
 
 use super::evaluation::{Gap, Scope, value};
+use super::mechanics::is_rigid;
 use super::number::Number;
 use super::state::{OracleState, Quantity};
 use super::tree::Placed;
@@ -33,7 +34,7 @@ impl Oracle {
                 take(own, shape, &value.items);
             }
         }
-        for Placed { kind, rounds } in &self.placed {
+        for Placed { kind, rounds } in self.placed.iter() {
             if let StatementKind::Out { name: own, value: expression, .. } = kind
                 && name.split('.').next() == Some(own.text.as_str())
             {
@@ -46,5 +47,28 @@ impl Oracle {
         } else {
             Ok(found)
         }
+    }
+
+    /// `true` with contacts, whose closing and opening end steps.
+    pub fn has_contacts(&self) -> bool {
+        let is =
+            |placed: &Placed| matches!(&placed.kind, StatementKind::Element { kind: Element::Contact, .. });
+        self.placed.iter().any(is)
+    }
+
+    /// `true` with contacts without stiffness, in whose impacts velocities jump.
+    pub fn has_impacts(&self) -> bool {
+        self.placed.iter().any(|placed| is_rigid(&placed.kind))
+    }
+
+    /// `true` with masses or forces.
+    pub fn is_dynamic(&self) -> bool {
+        let is = |placed: &Placed| {
+            matches!(
+                placed.kind,
+                StatementKind::Element { .. } | StatementKind::Load { .. } | StatementKind::Energy { .. }
+            )
+        };
+        self.placed.iter().any(is)
     }
 }

@@ -13,8 +13,10 @@ pub struct OracleState {
     pub qdd: Vec<f64>,
     /// Multipliers: M.
     pub lambda: Vec<f64>,
-    /// First-order states.
+    /// First-order states, then the deflections of bristles.
     pub states: Vec<f64>,
+    /// Forces of rigid contacts and of frictions that stick, in the order of the text: of [`held`](super::Oracle::held).
+    pub held: Vec<f64>,
 }
 
 /// A row with its time derivatives along the motion.
