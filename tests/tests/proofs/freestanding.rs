@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use mbs_tests::{proofs::Workshop, tools};
 
 /// One a mechanism and scalar type: all emitted functions and, but for lanes, all solvers.
-const EXPORTS: [&str; 18] = [
+const EXPORTS: [&str; 19] = [
     "proof_batch",
     "proof_cam_f32",
     "proof_cam_f64",
@@ -29,6 +29,7 @@ const EXPORTS: [&str; 18] = [
     "proof_platform_f32",
     "proof_platform_f64",
     "proof_platform_lanes",
+    "proof_sledge",
 ];
 
 /// The only symbols that may come from elsewhere.

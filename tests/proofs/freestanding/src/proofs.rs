@@ -4,8 +4,8 @@ use core::hint::black_box;
 
 use mbs_runtime::Lanes;
 use proof_subjects::{
-    FourBar, Hammer, Parallelogram, Platform, Start, cam, engine, exercise_batch, exercise_contacts,
-    exercise_dynamics, exercise_emitted, exercise_functions, exercise_laws, exercise_masses,
+    FourBar, Hammer, Parallelogram, Platform, Sledge, Start, cam, engine, exercise_batch, exercise_contacts,
+    exercise_dynamics, exercise_emitted, exercise_functions, exercise_laws, exercise_masses, exercise_modes,
     exercise_solvers, exercise_splines, exercise_tape,
 };
 
@@ -100,6 +100,12 @@ pub extern "C" fn proof_hammer() -> bool {
         & exercise_contacts(black_box(Hammer::<f32>::default())).is_ok()
 }
 
+/// Impacts, frictions that stick and events, in `f64`; `panic_free` has `f32` too. False where a solver fails.
+#[unsafe(no_mangle)]
+pub extern "C" fn proof_sledge() -> bool {
+    exercise_modes(black_box(Sledge::<f64>::default())).is_ok()
+}
+
 /// Motion laws and splines, fits included; false where one fails.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_drivers() -> bool {
@@ -134,6 +140,7 @@ pub extern "C" fn proof_entry() -> bool {
         & proof_engine_f64()
         & proof_engine_f32()
         & proof_hammer()
+        & proof_sledge()
         & proof_drivers()
         & proof_tape()
 }

@@ -7,8 +7,8 @@ use std::error::Error;
 
 use mbs_runtime::{Failure, Kinematic, Lanes, Real, Scalar};
 use proof_subjects::{
-    FourBar, Hammer, Parallelogram, Platform, Start, cam, engine, exercise_batch, exercise_contacts,
-    exercise_dynamics, exercise_emitted, exercise_functions, exercise_laws, exercise_masses,
+    FourBar, Hammer, Parallelogram, Platform, Sledge, Start, cam, engine, exercise_batch, exercise_contacts,
+    exercise_dynamics, exercise_emitted, exercise_functions, exercise_laws, exercise_masses, exercise_modes,
     exercise_solvers, exercise_splines, exercise_tape,
 };
 
@@ -59,6 +59,8 @@ fn dynamics() -> Result<(), Failure> {
     exercise_masses(engine::<Lanes<f64, 4>>(), &Start::of(&engine()));
     exercise_contacts(Hammer::<f64>::default())?;
     exercise_contacts(Hammer::<f32>::default())?;
+    exercise_modes(Sledge::<f64>::default())?;
+    exercise_modes(Sledge::<f32>::default())?;
     exercise_dynamics(engine::<f64>())?;
     exercise_dynamics(engine::<f32>())
 }

@@ -4,8 +4,8 @@ use core::hint::black_box;
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Direction, DormandPrince5, DormandPrince8, Embedded, Explicit,
-    Formulation, GeneralizedAlpha, Method, Penalty, Projection, Radau5, RungeKutta4, SemiImplicitEuler,
-    Simulation, Unstabilized, VelocityTransformation,
+    Extrapolated, Formulation, GeneralizedAlpha, Method, MoreauJean, Penalty, Projection, Radau5,
+    RungeKutta4, SemiImplicitEuler, Simulation, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure, Partitioned, Real, Scalar};
 
@@ -66,6 +66,7 @@ where
     fixed(mechanism, Explicit::new(RungeKutta4, VelocityTransformation))?;
     fixed(mechanism, GeneralizedAlpha::default())?;
     fixed(mechanism, AugmentedLagrangian)?;
+    fixed(mechanism, Extrapolated)?;
     fixed(mechanism, Explicit::new(Radau5, Projection::default()))?;
     adaptive(mechanism, Explicit::new(Radau5, Projection::default()))?;
     adaptive(mechanism, Explicit::new(DormandPrince5, Projection::default()))?;
@@ -83,6 +84,29 @@ where
 {
     fixed(mechanism, Explicit::new(RungeKutta4, Projection::default()))?;
     adaptive(mechanism, Explicit::new(DormandPrince8, Projection::default()))
+}
+
+/// Impacts, frictions that stick and events: every method that follows them, and the analyses of one state.
+///
+/// # Errors
+/// Those of the solvers; a state at which an analysis has no answer is none.
+pub fn exercise_modes<S, R: Real, const N: usize, const M: usize>(mechanism: S) -> Result<(), Failure>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M> + Copy,
+{
+    let motion = fixed(mechanism, MoreauJean)?;
+    let (q, qd) = (*motion.q(), *motion.qd());
+    black_box(entry::start_near(mechanism, MoreauJean, motion.t(), q, qd).is_ok());
+    black_box(entry::determinacy(&motion, black_box(&mut [true; 4]))?);
+    black_box(entry::linearize(motion.mechanism(), motion.instant()).is_ok());
+    black_box(entry::inverse(motion.mechanism(), motion.t(), &q, &motion.instant().y.states).is_ok());
+    black_box(entry::equilibrium(motion.mechanism(), motion.t(), &q).is_ok());
+    fixed(mechanism, Explicit::new(SemiImplicitEuler, Projection::default()))?;
+    fixed(mechanism, Explicit::new(RungeKutta4, VelocityTransformation))?;
+    fixed(mechanism, Explicit::new(Radau5, Projection::default()))?;
+    adaptive(mechanism, Explicit::new(Radau5, Projection::default()))?;
+    adaptive(mechanism, Explicit::new(DormandPrince8, VelocityTransformation))?;
+    adaptive(mechanism, Explicit::new(DormandPrince5, Projection::default()))
 }
 
 /// Steps of fixed size.

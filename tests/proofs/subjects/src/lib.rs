@@ -14,15 +14,17 @@ pub mod four_bar;
 pub mod hammer;
 pub mod parallelogram;
 pub mod platform;
+pub mod sledge;
 pub mod tape;
 
 pub use cam::{Cam, cam};
 pub use drivers::{exercise_laws, exercise_splines};
-pub use dynamics::{exercise_contacts, exercise_dynamics, exercise_masses};
+pub use dynamics::{exercise_contacts, exercise_dynamics, exercise_masses, exercise_modes};
 pub use engine::{Engine, engine};
 pub use exercise::{Start, exercise_batch, exercise_emitted, exercise_functions, exercise_solvers};
 pub use four_bar::FourBar;
 pub use hammer::Hammer;
 pub use parallelogram::Parallelogram;
 pub use platform::Platform;
+pub use sledge::Sledge;
 pub use tape::exercise_tape;
