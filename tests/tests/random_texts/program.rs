@@ -138,7 +138,7 @@ fn compare() {
     println!("{summary}");
 }
 
-fn digits<S: Mechanism<f64, N, M> + Default, const N: usize, const M: usize>(
+fn digits<S: Mechanism<f64, N, M> + Default + 'static, const N: usize, const M: usize>(
     oracle: &Oracle,
     summary: &mut Summary,
 ) {
