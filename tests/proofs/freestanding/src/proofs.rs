@@ -100,7 +100,7 @@ pub extern "C" fn proof_hammer() -> bool {
         & exercise_contacts(black_box(Hammer::<f32>::default())).is_ok()
 }
 
-/// Impacts, frictions that stick and events, in `f64`; `panic_free` has `f32` too. False where a solver fails.
+/// Impacts, frictions that stick and events, in `f64`; `panic_free` has `f32` and all methods. False where a solver fails.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_sledge() -> bool {
     exercise_modes(black_box(Sledge::<f64>::default())).is_ok()

@@ -86,7 +86,7 @@ where
     adaptive(mechanism, Explicit::new(DormandPrince8, Projection::default()))
 }
 
-/// Impacts, frictions that stick and events: every method that follows them, and the analyses of one state.
+/// Impacts, frictions that stick and events: steps over them, steps between them, and the analyses of one state.
 ///
 /// # Errors
 /// Those of the solvers; a state at which an analysis has no answer is none.
@@ -101,12 +101,22 @@ where
     black_box(entry::linearize(motion.mechanism(), motion.instant()).is_ok());
     black_box(entry::inverse(motion.mechanism(), motion.t(), &q, &motion.instant().y.states).is_ok());
     black_box(entry::equilibrium(motion.mechanism(), motion.t(), &q).is_ok());
+    adaptive(mechanism, Explicit::new(DormandPrince5, Projection::default()))
+}
+
+/// Impacts, frictions that stick and events by further methods.
+///
+/// # Errors
+/// Those of the solvers.
+pub fn exercise_modes_further<S, R: Real, const N: usize, const M: usize>(mechanism: S) -> Result<(), Failure>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M> + Copy,
+{
     fixed(mechanism, Explicit::new(SemiImplicitEuler, Projection::default()))?;
     fixed(mechanism, Explicit::new(RungeKutta4, VelocityTransformation))?;
     fixed(mechanism, Explicit::new(Radau5, Projection::default()))?;
     adaptive(mechanism, Explicit::new(Radau5, Projection::default()))?;
-    adaptive(mechanism, Explicit::new(DormandPrince8, VelocityTransformation))?;
-    adaptive(mechanism, Explicit::new(DormandPrince5, Projection::default()))
+    adaptive(mechanism, Explicit::new(DormandPrince8, VelocityTransformation))
 }
 
 /// Steps of fixed size.
