@@ -79,7 +79,7 @@ fn settle<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 
 /// Change of the places of what holds.
 enum Change<'a, R> {
-    /// What has begun to hold, by the modes before, holds where it is; a contact no higher than closed.
+    /// Rows that have begun to hold, by the modes before, hold where they are; a contact no higher than closed.
     Begin(&'a [SetValuedMode<R>]),
     /// Open contacts keep how far they are below their gap of 0.
     Leave,

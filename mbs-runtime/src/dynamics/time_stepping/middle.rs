@@ -42,7 +42,7 @@ pub(super) struct Middle<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const
     required: [R; M],
 }
 
-/// What acts over a step.
+/// Forces, accelerations and modes of a step.
 pub(super) struct Acted<R, P, const N: usize, const M: usize, Z> {
     /// Mean accelerations, q̇⁺ less q̇ over h: N.
     pub(super) qdd: [R; N],
@@ -94,7 +94,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Middle<'a
         Ok(Middle { model, free, position, factors, t, h, y, required })
     }
 
-    /// What acts over the step that begins at `from`.
+    /// Forces, accelerations and modes of the step that begins at `from`.
     ///
     /// # Errors
     /// [`FailureKind::ImpactUndecided`], [`FailureKind::ContactUndecided`], [`FailureKind::StickingUndecided`],
