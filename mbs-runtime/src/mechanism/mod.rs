@@ -198,7 +198,7 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     fn lane(&self, lane: usize) -> Self::Lane;
 
     /// Shows `see` the value at `x` of the function at `index` of [`FUNCTIONS`](Self::FUNCTIONS), and its derivatives up to the order
-    /// there. Without such a function it shows nothing.
+    /// there, all in SI units: one number more than the order. Without such a function it shows nothing.
     #[inline]
     fn jets(&self, _index: usize, _x: T, _see: impl FnOnce(&[T])) {}
 
