@@ -1,4 +1,4 @@
-//! Methods and analyses that need slopes of the forces refuse friction that sticks.
+//! Implicit methods of fixed steps need slopes of the forces: they refuse friction that sticks.
 
 use mbs_runtime::dynamics::{AugmentedLagrangian, Extrapolated, GeneralizedAlpha, Method, Simulation};
 use mbs_runtime::{Failure, FailureKind, mechanism};
