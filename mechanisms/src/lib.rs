@@ -25,7 +25,7 @@ pub mod determinant_guide;
 pub mod door_with_closer;
 pub mod double_parallelogram;
 pub mod double_pendulum;
-mod elliptic;
+pub mod elliptic;
 pub mod five_angle_loop;
 pub mod four_bar;
 pub mod four_bar_mass;
@@ -36,7 +36,7 @@ pub mod geneva;
 pub mod governor;
 pub mod heavy_top;
 pub mod jansen;
-mod known;
+pub mod known;
 pub mod loop_length;
 pub mod loop_relative;
 pub mod n_four_bar;
@@ -59,15 +59,6 @@ pub mod three_rrr;
 pub mod valve_spring;
 pub mod watt;
 pub mod woodpecker;
-
-#[cfg(test)]
-mod closed_form;
-#[cfg(test)]
-mod newton_euler;
-#[cfg(test)]
-mod reference;
-#[cfg(test)]
-mod workbench;
 
 use mbs_workbench::catalogue::Catalogue;
 

@@ -260,6 +260,3 @@ pub fn desmo() -> DesmoKinematic<design::Curve> {
 pub const CARD: Card = card!(desmo())
     .compared_as(|| erase(DesmoKinematic::new(NumberedStandIn::array(0))))
     .studied_by(&study::STUDY);
-
-#[cfg(test)]
-mod tests;

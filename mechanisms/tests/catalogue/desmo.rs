@@ -1,0 +1,107 @@
+//! The valvetrain with permanent contact, against its lift law.
+
+use core::f64::consts::PI;
+
+use mbs_runtime::Stepper;
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
+use mbs_workbench::cams::follower::Direction;
+use mbs_workbench::cams::lift::{Flank, Lift};
+use mbs_workbench::study::Values;
+
+use mechanisms::desmo::motion::{Misfit, against_law};
+use mechanisms::desmo::study::STUDY;
+use mechanisms::desmo::{Design, DesmoFriction};
+
+#[test]
+fn the_valve_moves_by_its_law_and_both_rockers_keep_their_distance() {
+    let valve = || Design::law(0.011, 160_f64.to_radians()).expect("a law");
+    // Of another law whose valve stays open for a while, half a turn behind the start of its rise.
+    let dwelling = || Lift::flanks(Flank::Polynomial4567, 0.008, [1.3, 0.4, 1.4]).expect("a law");
+    for (name, law) in [("even powers", valve()), ("4-5-6-7 with a dwell", dwelling())] {
+        for direction in [Direction::CounterClockwise, Direction::Clockwise] {
+            let design = Design::ready(law.clone(), direction);
+            let compared = against_law(&design, &design.curves().expect("a pair of cams"), 0.0);
+            let [lift, velocity, acceleration, apart] = compared.expect("permanent contact");
+            println!(
+                "desmo, {name}, {direction:?}: lift {lift:.1e} m, velocity {velocity:.1e} m/rad, \
+                 acceleration {acceleration:.1e} m/rad^2, rockers {apart:.1e} m of 2e-12"
+            );
+            assert!(lift < 1e-14 && velocity < 1e-13 && acceleration < 1e-12 && apart < 2e-12);
+        }
+    }
+}
+
+#[test]
+fn what_both_cams_contradict_each_other_by_is_the_mismatch_of_the_row_that_yields() {
+    let law = Design::law(0.011, 160_f64.to_radians()).expect("a law");
+    let design = Design::ready(law, Direction::Clockwise);
+    let exact = design.curves().expect("a pair of cams");
+    let [position, rate, acceleration] =
+        Misfit::of(&design, &exact, 360, 0.3).expect("no contradiction").largest();
+    assert!(
+        position < 1e-15 && rate < 1e-14 && acceleration < 1e-13,
+        "{position:e} {rate:e} {acceleration:e}"
+    );
+    let tables = exact.each_ref().map(|curve| curve.table(90).expect("a table"));
+    let misfit = Misfit::of(&design, &tables, 360, 0.3).expect("a contradiction below the width");
+    // The same from permanent contact without the row: the distance of the rockers and its derivatives.
+    let mut mechanism = design.moved_by(tables);
+    mechanism.speed = 1.0;
+    let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0).expect("permanent contact");
+    // Positions of rows that do not yield are closed to 5e-14 of the reference length.
+    for (k, angle) in misfit.angle.iter().enumerate() {
+        stepper.advance_to(angle.to_radians() + PI).expect("permanent contact");
+        let apart = stepper.outputs().as_ref()[0];
+        let expected = [Some(apart.value), apart.rate, apart.acceleration];
+        for ((column, expected), allowed) in misfit.columns.iter().zip(expected).zip([5e-15, 5e-14, 1e-12]) {
+            let expected = -expected.expect("a smooth output");
+            assert!((column[k] - expected).abs() < allowed, "{angle}: {:e} {expected:e}", column[k]);
+        }
+    }
+    let [position, rate, acceleration] = misfit.largest();
+    println!("desmo of 90 points: mismatch {position:.1e} m, {rate:.1e} m/rad, {acceleration:.1e} m/rad^2");
+    assert!(position > 1e-10 && acceleration > 1e-7, "{position:e} {acceleration:e}");
+}
+
+#[test]
+fn the_first_impacts_are_those_of_an_independent_program() {
+    /// Lifts (m) at 45, 54 and 72 of 72 parts of 200° from the start, from `tests/motions/data/desmo.csv`, case `9000 play`.
+    const LIFTS: [(usize, f64); 3] =
+        [(45, 0.0007354327731979067), (54, 0.00652443145074413), (72, 0.009013459519438745)];
+    let law = Design::law(0.011, 160_f64.to_radians()).expect("a law");
+    let design = Design::ready(law, Direction::CounterClockwise);
+    let valvetrain: DesmoFriction<_> = design.mechanism().expect("a pair of cams").scene();
+    let method: Explicit<DormandPrince8, Projection> = Explicit::default();
+    let run = Simulation::start_from_text(valvetrain.clone(), method, 0.0).expect("it starts");
+    let mut run = run.with_tolerance(Tolerance::new(1e-8));
+    for (place, expected) in LIFTS {
+        let until = core::f64::consts::TAU / valvetrain.speed * 200.0 / 360.0 * place as f64 / 72.0;
+        run.advance_to(until).expect("it moves");
+        let error = (run.q()[2] - expected).abs();
+        println!("desmo at place {place}: lift {:.6} mm, {error:.1e} m of 1e-8", 1e3 * run.q()[2]);
+        assert!(error < 1e-8, "{error:e}");
+    }
+}
+
+#[test]
+fn a_law_that_opens_the_valve_where_the_motion_begins_is_refused() {
+    let mut values = Values::of(&STUDY);
+    values.law = Some(Lift::flanks(Flank::Cycloid, 0.008, [2.0, 0.5, 2.0]).expect("a law"));
+    let refused = (STUDY.run)(&values, &mut |_| ()).map(|_| ()).expect_err("it is open").to_string();
+    assert!(refused.contains("mm at 180°") && refused.contains("shift the law"), "{refused}");
+}
+
+#[test]
+fn a_study_refuses_values_that_it_cannot_run_with() {
+    for (name, value, expected) in [
+        ("turns", 0.0, "`turns` must be above 0"),
+        ("points", 3.0, "`points` is 0 or at least 16"),
+        ("lift", -0.01, "lift"),
+        ("lift", 0.1, "does not reach the cam"),
+    ] {
+        let mut values = Values::of(&STUDY);
+        values.set(name, value).expect("a parameter");
+        let refused = (STUDY.run)(&values, &mut |_| ()).map(|_| ()).expect_err(name).to_string();
+        assert!(refused.contains(expected), "{name}: {refused}");
+    }
+}

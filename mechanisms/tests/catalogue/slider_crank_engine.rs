@@ -1,0 +1,60 @@
+//! Tests of `mechanisms::slider_crank_engine`.
+
+use mbs_workbench::card::Preset;
+
+use crate::reference::{dynamics_at, load};
+use mechanisms::slider_crank_engine::*;
+
+/// Parameters that an effect vanishes with.
+const SWITCHES: [&str; 8] = ["bore", "g", "mu_liner", "viscous", "mu_pins", "stall", "drag", "stiffness"];
+
+/// Of a case of the reference: those that it keeps.
+fn kept(case: &str) -> &'static [&'static str] {
+    match case {
+        "all" => &SWITCHES,
+        "gas" => &["bore"],
+        "gravity" => &["g"],
+        "liner_friction" => &["mu_liner", "viscous"],
+        "pin_friction" => &["mu_pins"],
+        "motor" => &["stall"],
+        "fan" => &["drag"],
+        "spring" => &["stiffness"],
+        other => panic!("no case {other}"),
+    }
+}
+
+#[test]
+fn all_effects_and_each_alone_move_as_equations_derived_by_hand() {
+    let reference = include_str!("../../references/slider_crank_engine.txt");
+    let mut cases: Vec<(&str, Vec<[f64; 4]>)> = Vec::new();
+    for line in reference.lines().filter(|line| !line.starts_with('#')) {
+        let (case, numbers) = line.split_once(' ').expect("a case");
+        let numbers: Vec<f64> = numbers.split(' ').map(|number| number.parse().expect("a number")).collect();
+        if cases.last().is_none_or(|(known, _)| *known != case) {
+            cases.push((case, Vec::new()));
+        }
+        let numbers = <[f64; 4]>::try_from(numbers).expect("four numbers");
+        cases.last_mut().expect("a case").1.push(numbers);
+    }
+    assert_eq!(cases.len(), 8);
+    for (case, expected) in cases {
+        let set = SWITCHES.iter().filter(|name| !kept(case).contains(name));
+        let set = set.map(|name| ((*name).to_string(), 0.0)).collect();
+        let run = Preset { label: case.to_string(), description: String::new(), set };
+        let times: Vec<f64> = expected.iter().map(|[t, ..]| *t).collect();
+        let found = dynamics_at(&CARD, &run, &times);
+        let side = load(&found.motion, "side_load");
+        let most = expected.iter().fold(0.0_f64, |most, [.., side]| most.max(side.abs()));
+        let mut worst = [0.0_f64; 3];
+        for (k, [_, theta, omega, load]) in expected.iter().enumerate() {
+            let crank = &found.motion.coordinates[0];
+            let errors = [crank.q[k] - theta, (crank.qd[k] - omega) / 251.0, (side[k] - load) / most];
+            worst.iter_mut().zip(errors).for_each(|(worst, error)| *worst = worst.max(error.abs()));
+        }
+        println!(
+            "engine, {case}: angle {:.1e}, speed {:.1e}, side load {:.1e}",
+            worst[0], worst[1], worst[2]
+        );
+        assert!(worst[0] < 1e-8 && worst[1] < 1e-8 && worst[2] < 1e-6, "{case}: {worst:?}");
+    }
+}
