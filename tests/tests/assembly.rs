@@ -1,4 +1,4 @@
-//! Assembly from poor guesses: every ready mechanism with a declared branch, thousands of guesses each.
+//! Assembly from poor guesses: every ready mechanism with a declared branch, hundreds of guesses each, thousands with the feature `long`.
 
 use std::sync::Mutex;
 use std::thread;
@@ -9,7 +9,7 @@ use mbs_workbench::verify::states::Generator;
 use mechanisms::CATALOGUE;
 
 /// Guesses of each mechanism.
-const GUESSES: u32 = 2000;
+const GUESSES: u32 = if cfg!(feature = "long") { 2000 } else { 500 };
 
 /// Largest error of every coordinate of the guess: a whole turn of angles, four reference lengths.
 const ANGLE: f64 = core::f64::consts::PI;

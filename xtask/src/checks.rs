@@ -7,13 +7,15 @@ use crate::{browser, costs, documents, fuzz, growth, instructions, lines, plante
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 8] = [
+const LONG: [(&str, &str); 10] = [
     ("mbs-codegen", ""),
     ("mbs-motions", ""),
+    ("mbs-cases", "events"),
     ("mbs-cases", "friction"),
     ("mbs-cases", "impacts"),
     ("mbs-cases", "laws"),
     ("mechanisms", "effects"),
+    ("mbs-tests", "assembly"),
     ("mbs-tests", "proofs"),
     ("mbs-faults", "nothing_follows"),
 ];

@@ -91,7 +91,7 @@ fn lanes_follow_random_inputs_as_each_alone_and_fail_alone() {
     let mut alone: [_; LANES] =
         core::array::from_fn(|_| Stepper::assemble(Guarded::default(), GUESS, 0.0).expect("it assembles"));
     let (mut numbers, mut failed) = (Numbers(7), 0);
-    for k in 1..=400 {
+    for k in 1..=120 {
         let signals: [Signal<f64>; LANES] =
             core::array::from_fn(|lane| told(batch.q()[0].0[lane], &mut numbers));
         // Now and then a crank that closes no loop.

@@ -14,3 +14,8 @@
 //!
 //! The first line of each file says what the fault was. Several files with one code are tests of one class. A fault without a file of its own is
 //! tested with the one with which it was found, or in tests of the changed code.
+
+/// Stride through a sample of which the first tier takes every `stride`th member. With the feature `long` it is 1.
+pub const fn every(stride: usize) -> usize {
+    if cfg!(feature = "long") { 1 } else { stride }
+}
