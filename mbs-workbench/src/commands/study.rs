@@ -54,19 +54,23 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     if let Some(speed) = arguments.speed {
         values.set("speed", speed * core::f64::consts::PI / 30.0).map_err(usage)?;
     }
+    let mut said = None;
     if let Some(law) = &arguments.law {
         if !study.takes_law {
             return Err(CommandError::Usage(format!("the study of `{name}` has no lift law")));
         }
-        values.law = Some(law_options::written(law)?);
+        let given = law_options::written(law)?;
+        said = Some(format!(" Lift law: {}.", given.table.unwrap_or_else(|| law.clone())));
+        values.law = Some(given.lift);
     }
-    let report = (study.run)(&values, &mut |step| {
+    let mut report = (study.run)(&values, &mut |step| {
         // For a reader who waits.
         if std::io::stderr().is_terminal() {
             let _ = writeln!(std::io::stderr(), "{step} ...");
         }
     })
     .map_err(|error| CommandError::Failed(error.to_string()))?;
+    report.sentence.extend(said);
     let origin = Origin::of_text(&card.name(), card.equations().source());
     let directory = arguments
         .out
