@@ -52,7 +52,7 @@ const TEXT: &str = "mechanism Bar;\nparam w: rad/s = 1 in 0.1..9, tolerance 0.1;
 const TABLE: &str = "t (s),x (mm)\n0,1\n1,2\n2,4\n3,8\n4,16\n";
 
 /// A command line for each command, and more where the fields differ.
-const COMMANDS: [&[&str]; 38] = [
+const COMMANDS: [&[&str]; 39] = [
     &["list"],
     &["list", "bar.mbs"],
     &["check", "bar.mbs"],
