@@ -110,8 +110,9 @@ fn found<'a>(catalogue: &Catalogue<'a>, name: &str) -> Result<(&'a Card, &'stati
     let of_text = |card: &&Card| card.name().split(':').next() == Some(name) || card.name() == name;
     let own = catalogue.cards.iter().filter(of_text).find_map(|card| Some((card, card.study?)));
     own.ok_or_else(|| {
+        let own = catalogue.cards.iter().filter(|card| card.study.is_some());
         let known: Vec<String> =
-            catalogue.cards.iter().filter(|card| card.study.is_some()).map(Card::name).collect();
+            own.map(|card| card.name().split(':').next().unwrap_or_default().to_string()).collect();
         CommandError::Usage(format!("`{name}` brings no study; there are those of {}", known.join(", ")))
     })
 }
