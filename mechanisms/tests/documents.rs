@@ -52,7 +52,7 @@ const TEXT: &str = "mechanism Bar;\nparam w: rad/s = 1 in 0.1..9, tolerance 0.1;
 const TABLE: &str = "t (s),x (mm)\n0,1\n1,2\n2,4\n3,8\n4,16\n";
 
 /// A command line for each command, and more where the fields differ.
-const COMMANDS: [&[&str]; 38] = [
+const COMMANDS: [&[&str]; 39] = [
     &["list"],
     &["list", "bar.mbs"],
     &["check", "bar.mbs"],
@@ -117,6 +117,30 @@ const COMMANDS: [&[&str]; 38] = [
         "18mm",
         "--rust",
         "CAM",
+    ],
+    &[
+        "cam",
+        "345",
+        "--lift",
+        "4mm",
+        "--rise",
+        "60deg",
+        "--follower",
+        "desmodromic",
+        "--base",
+        "12mm",
+        "--pivot",
+        "19mm,-19mm",
+        "--arm",
+        "18.7mm",
+        "--roller",
+        "12mm",
+        "--valve-pad",
+        "-12mm,-12mm",
+        "--closer",
+        "--base 17mm --pivot 23mm,-29mm --arm 29mm --roller 12mm --side right --valve-pad -12mm,-32mm",
+        "--out",
+        "cam",
     ],
     &[
         "cam",

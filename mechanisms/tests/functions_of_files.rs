@@ -80,6 +80,13 @@ fn a_text_in_a_file_runs_with_tables_and_laws_of_the_command_line() {
         errors[0], errors[1], errors[2]
     );
     assert!(errors[0] < 1e-10 && errors[1] < 1e-14 && errors[2] < 1e-9, "{errors:?}");
+    // The page names tables with their points, and laws.
+    let page = fs::read_to_string(folder.join("report.html")).expect("the page");
+    for part in
+        ["table lift.csv, 180 points", "table push.csv, 21 points", "law 4567 --lift 8mm --rise 75deg"]
+    {
+        assert!(page.contains(part), "{part}");
+    }
     // Another function in the same program.
     let rows = run("lift[1]=lift.csv");
     assert!(rows.iter().all(|[_, one, other, _]| one == other));

@@ -3,9 +3,12 @@
 use core::f64::consts::TAU;
 use core::fmt::Write;
 
-use super::follower::{Cam, Place};
+use super::follower::{Cam, Follower, Place};
 use crate::output::svg::{COLOURS, label, open};
 use crate::tables::{Columns, Points, Spline, SplineKind, constant};
+
+/// Cam angles (rad) with their places.
+pub type Places = [(f64, Place<f64>)];
 
 /// Places of one turn at equal cam angles, from its beginning on.
 pub fn turn(cam: &Cam, count: usize) -> Vec<(f64, Place<f64>)> {
@@ -13,18 +16,22 @@ pub fn turn(cam: &Cam, count: usize) -> Vec<(f64, Place<f64>)> {
     (0..count).map(|k| (place(k), cam.place(place(k)))).collect()
 }
 
-/// One line a place: cam angle, lift with derivatives, contour, pitch curve, radii, pressure angle, sliding.
-pub fn csv(places: &[(f64, Place<f64>)], by_angle: bool) -> String {
-    let unit = if by_angle { "rad" } else { "m" };
+/// One line a place: cam angle, lift with derivatives, contour, pitch curve, radii, pressure angle, sliding; the angle of a rocker from
+/// its place at lift 0.
+pub fn csv(places: &Places, follower: &Follower) -> String {
+    let unit = if follower.lifts_by_angle() { "rad" } else { "m" };
+    let is_rocker = matches!(follower, Follower::Rocker { .. });
     let mut text = format!(
         "theta (rad),lift ({unit}),velocity ({unit}/rad),acceleration ({unit}/rad^2),jerk ({unit}/rad^3),contour x (m),contour y (m),\
          pitch x (m),pitch y (m),polar radius (m),polar angle (rad),d2r (m/rad^2),radius of curvature (m),pressure angle (rad),\
-         sliding (m/rad)\n"
+         sliding (m/rad){}\n",
+        if is_rocker { ",rocker (rad)" } else { "" }
     );
     for (theta, p) in places {
         let numbers =
             [&[*theta][..], &p.lift, &p.contour, &p.pitch, &p.polar, &[p.radius, p.pressure, p.sliding]];
-        let cells: Vec<String> = numbers.concat().iter().map(|x| format!("{x:?}")).collect();
+        let rocker = is_rocker.then_some(p.angle[0]);
+        let cells: Vec<String> = numbers.concat().iter().chain(&rocker).map(|x| format!("{x:?}")).collect();
         let _ = writeln!(text, "{}", cells.join(","));
     }
     text
@@ -33,7 +40,7 @@ pub fn csv(places: &[(f64, Place<f64>)], by_angle: bool) -> String {
 /// The contour as a closed polyline of DXF R12, in millimetres.
 ///
 /// Source: Autodesk, DXF Reference, release 12 (entities POLYLINE, VERTEX, SEQEND).
-pub fn dxf(places: &[(f64, Place<f64>)]) -> String {
+pub fn dxf(places: &Places) -> String {
     let mut text =
         String::from("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n");
     text += "0\nPOLYLINE\n8\nCAM\n66\n1\n70\n1\n10\n0.0\n20\n0.0\n30\n0.0\n";
@@ -44,25 +51,33 @@ pub fn dxf(places: &[(f64, Place<f64>)]) -> String {
     text + "0\nSEQEND\n8\nCAM\n0\nENDSEC\n0\nEOF\n"
 }
 
-/// Contour and base circle to scale as a picture, with a scale of ten millimetres.
-pub fn svg(places: &[(f64, Place<f64>)], base: f64) -> String {
+/// Contours, each with the radius of its base circle, to scale as a picture, with a scale of ten millimetres.
+pub fn svg(contours: &[(&Places, f64)]) -> String {
     const SIDE: f64 = 460.0;
-    let reach = places.iter().map(|(_, place)| place.polar[0]).fold(base, f64::max);
-    let pixels = 0.45 * SIDE / reach;
+    let radii = contours.iter().flat_map(|(places, base)| {
+        places.iter().map(|(_, place)| place.polar[0]).chain(core::iter::once(*base))
+    });
+    let pixels = 0.45 * SIDE / radii.fold(0.0, f64::max);
     let mut svg = open(SIDE as usize, SIDE as usize);
-    let mut path = String::new();
-    for (k, (_, place)) in places.iter().enumerate() {
-        let [x, y] = place.contour.map(|x| pixels * x);
-        let pen = if k == 0 { "M" } else { "L" };
-        let _ = write!(path, "{pen}{:.2} {:.2}", 0.5 * SIDE + x, 0.5 * SIDE - y);
+    let (centre, [blue, orange, third, ..]) = (0.5 * SIDE, COLOURS);
+    let see_through = if contours.len() > 1 { " fill-opacity=\"0.6\"" } else { "" };
+    for ((places, base), colour) in contours.iter().zip([blue, third]) {
+        let mut path = String::new();
+        for (k, (_, place)) in places.iter().enumerate() {
+            let [x, y] = place.contour.map(|x| pixels * x);
+            let pen = if k == 0 { "M" } else { "L" };
+            let _ = write!(path, "{pen}{:.2} {:.2}", centre + x, centre - y);
+        }
+        let _ = writeln!(
+            svg,
+            "<path d=\"{path}Z\" fill=\"#d8e3ee\"{see_through} stroke=\"{colour}\" stroke-width=\"2\"/>"
+        );
+        let _ = writeln!(
+            svg,
+            "<circle cx=\"{centre}\" cy=\"{centre}\" r=\"{:.2}\" fill=\"none\" stroke=\"{orange}\" stroke-dasharray=\"5 4\"/>",
+            base * pixels
+        );
     }
-    let (centre, [blue, orange, ..]) = (0.5 * SIDE, COLOURS);
-    let _ = writeln!(svg, "<path d=\"{path}Z\" fill=\"#d8e3ee\" stroke=\"{blue}\" stroke-width=\"2\"/>");
-    let _ = writeln!(
-        svg,
-        "<circle cx=\"{centre}\" cy=\"{centre}\" r=\"{:.2}\" fill=\"none\" stroke=\"{orange}\" stroke-dasharray=\"5 4\"/>",
-        base * pixels
-    );
     let _ = writeln!(svg, "<path d=\"M{0} {centre}h16m-8 -8v16\" stroke=\"black\"/>", centre - 8.0);
     let _ = writeln!(
         svg,
@@ -78,7 +93,7 @@ pub fn svg(places: &[(f64, Place<f64>)], base: f64) -> String {
 ///
 /// # Errors
 /// A message where the curve is not star-shaped about the cam's centre.
-pub fn rust(name: &str, source: &str, places: &[(f64, Place<f64>)]) -> Result<String, String> {
+pub fn rust(name: &str, source: &str, places: &Places) -> Result<String, String> {
     let mut points: Vec<(f64, f64)> =
         places.iter().map(|(_, p)| (p.pitch[1].atan2(p.pitch[0]), p.pitch[0].hypot(p.pitch[1]))).collect();
     let step = |pair: &[(f64, f64)]| (pair[1].0 - pair[0].0 + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
@@ -100,7 +115,7 @@ pub fn rust(name: &str, source: &str, places: &[(f64, Place<f64>)]) -> Result<St
 
 #[cfg(test)]
 mod tests {
-    use super::super::follower::{Direction, Follower};
+    use super::super::follower::Direction;
     use super::super::lift::{Flank, Lift};
     use super::*;
 
@@ -113,7 +128,7 @@ mod tests {
     #[test]
     fn files_have_every_point() {
         let places = turn(&cam(), 90);
-        let text = csv(&places, false);
+        let text = csv(&places, &cam().follower);
         assert_eq!(text.lines().count(), 91);
         let columns = text.lines().next().expect("a header").split(',').count();
         assert!(text.lines().all(|line| line.split(',').count() == columns));

@@ -150,7 +150,46 @@ impl Side {
     }
 }
 
+/// An arm and the distance of its pivot reach a pad's centre.
+fn spans(apart: f64, arm: f64, reach: f64) -> Result<(), CamError> {
+    positive("arm", arm)?;
+    if (apart - arm).abs() < reach && reach < apart + arm {
+        return Ok(());
+    }
+    let why = format!(
+        "the roller does not reach the base circle: {:.4} mm and the arm of {:.4} mm must span {:.4} mm",
+        1e3 * apart,
+        1e3 * arm,
+        1e3 * reach
+    );
+    Err(CamError::Value("arm", why))
+}
+
 impl Follower {
+    /// A rocker by the radius of the contour at lift 0 and the arm of its pad on the cam, in place of the pad's centre.
+    ///
+    /// Lengths in metres. A closing cam has its largest radius at lift 0.
+    ///
+    /// # Errors
+    /// [`CamError::Value`] of a dimension, and where arm and pivot do not reach the pad's place.
+    pub fn rocker(
+        base: f64,
+        pivot: [f64; 2],
+        arm: f64,
+        radius: f64,
+        side: Side,
+        valve_pad: [f64; 2],
+    ) -> Result<Self, CamError> {
+        let apart = positive("pivot", pivot[0].hypot(pivot[1]))?;
+        let reach = positive("base circle", base)? + positive("roller", radius)?;
+        spans(apart, arm, reach)?;
+        // Law of cosines in the triangle of pivot, cam and pad.
+        let rest = ((apart * apart + arm * arm - reach * reach) / (2.0 * apart * arm)).acos();
+        let angle = (-pivot[1]).atan2(-pivot[0]) + side.sign() * rest;
+        let cam_pad = [pivot[0] + arm * angle.cos(), pivot[1] + arm * angle.sin()];
+        Ok(Follower::Rocker { pivot, cam_pad, radius, valve_pad })
+    }
+
     /// Radius of the pad; none of a flat face.
     pub fn pad(&self) -> Option<f64> {
         match *self {
@@ -210,19 +249,7 @@ impl Follower {
                 }
             }
             Follower::OscillatingRoller { base, arm, radius, .. } => {
-                positive("arm", arm)?;
-                let (apart, reach) = (apart.unwrap_or(f64::NAN), base + radius);
-                if (apart - arm).abs() < reach && reach < apart + arm {
-                    Ok(())
-                } else {
-                    let why = format!(
-                        "the roller does not reach the base circle: {:.4} mm and the arm of {:.4} mm must span {:.4} mm",
-                        1e3 * apart,
-                        1e3 * arm,
-                        1e3 * reach
-                    );
-                    fault("arm", why)
-                }
+                spans(apart.unwrap_or(f64::NAN), arm, base + radius)
             }
             Follower::Rocker { pivot, cam_pad, valve_pad, .. } => {
                 let length = |to: [f64; 2]| (to[0] - pivot[0]).hypot(to[1] - pivot[1]);
@@ -257,6 +284,17 @@ impl Cam {
             }
         }
         Ok(cam)
+    }
+
+    /// `true` if the cam of a rocker opens the valve, `false` if it closes it; none of other followers.
+    ///
+    /// The pad on an opening cam goes outwards with the lift.
+    pub fn opens(&self) -> Option<bool> {
+        let Follower::Rocker { cam_pad, .. } = self.follower else { return None };
+        let places = (0..360).map(|k| self.place(self.lift.origin() + f64::from(k).to_radians()));
+        let most = places.max_by(|a, b| a.lift[0].abs().total_cmp(&b.lift[0].abs()))?;
+        let outwards = most.centre[0].hypot(most.centre[1]) - cam_pad[0].hypot(cam_pad[1]);
+        Some(outwards * most.lift[0] > 0.0)
     }
 
     /// The follower at `theta`, and the angle of its arm.

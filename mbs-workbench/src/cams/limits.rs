@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use super::CamError;
-use super::follower::{Cam, Follower, Place};
+use super::follower::{Cam, Follower, Place, Side};
 use super::search::{least, pieces};
 
 /// Force between follower and cam with what Hertz's pressure of a line contact needs.
@@ -47,6 +47,8 @@ pub struct Limits {
     pub half_face: Option<f64>,
     /// Largest radius of the contour (m).
     pub outer: Option<f64>,
+    /// Radius of the shaft, which the follower stays clear of (m); without it the cam's centre alone.
+    pub shaft: Option<f64>,
 }
 
 /// A limit that is examined.
@@ -66,6 +68,8 @@ pub enum Limit {
     HalfFace(f64),
     /// Largest radius of the contour.
     Outer(f64),
+    /// Radius of the shaft, 0 for the cam's centre alone.
+    Shaft(f64),
 }
 
 /// The place of a turn that comes closest to a limit, or breaks it most.
@@ -84,7 +88,7 @@ pub struct Verdict {
 }
 
 impl Limits {
-    /// The limits that are given, undercut first.
+    /// Undercut and shaft, then the limits that are given.
     pub fn list(&self) -> Vec<Limit> {
         let given = [
             self.radius.map(Limit::Radius),
@@ -94,7 +98,10 @@ impl Limits {
             self.half_face.map(Limit::HalfFace),
             self.outer.map(Limit::Outer),
         ];
-        [Limit::Undercut].into_iter().chain(given.into_iter().flatten()).collect()
+        [Limit::Undercut, Limit::Shaft(self.shaft.unwrap_or(0.0))]
+            .into_iter()
+            .chain(given.into_iter().flatten())
+            .collect()
     }
 }
 
@@ -109,6 +116,7 @@ impl Limit {
             Limit::Hertz(..) => "Hertz pressure",
             Limit::HalfFace(_) => "half face width",
             Limit::Outer(_) => "outer radius",
+            Limit::Shaft(_) => "shaft",
         }
     }
 
@@ -121,13 +129,14 @@ impl Limit {
             | Limit::PressureAngle(bound)
             | Limit::Hertz(bound, _)
             | Limit::HalfFace(bound)
-            | Limit::Outer(bound) => bound,
+            | Limit::Outer(bound)
+            | Limit::Shaft(bound) => bound,
         }
     }
 
     /// `true` if the value may not fall below the bound.
     pub fn is_least(&self) -> bool {
-        matches!(self, Limit::Undercut | Limit::Radius(_) | Limit::Wheel(_))
+        matches!(self, Limit::Undercut | Limit::Radius(_) | Limit::Wheel(_) | Limit::Shaft(_))
     }
 
     /// Value at a place: a radius, an angle, a pressure.
@@ -146,7 +155,13 @@ impl Limit {
             Limit::Hertz(_, load) => load.pressure(place.radius, pad),
             Limit::HalfFace(_) => place.along.abs(),
             Limit::Outer(_) => place.polar[0],
+            Limit::Shaft(_) => clear(place, pad),
         }
+    }
+
+    /// `true` if the bound itself is not kept: a cusp, a contour through the cam's centre.
+    pub fn is_strict(&self) -> bool {
+        self.is_least() && self.bound() == 0.0
     }
 
     /// Distance from the limit, not negative where it is kept, continuous through straight flanks.
@@ -175,7 +190,17 @@ impl Limit {
             (Limit::Hertz(most, load), _) => 1.0 - load.pressure(place.radius, pad) / most,
             (Limit::HalfFace(most), _) => most - place.along.abs(),
             (Limit::Outer(most), _) => most - place.polar[0],
+            (Limit::Shaft(radius), _) => clear(place, pad) - radius,
         }
+    }
+}
+
+/// Distance of the cam's centre from the follower (m), negative where a pad or a face is over it. Its least value over a turn is the
+/// least radius of the contour.
+fn clear(place: &Place<f64>, pad: Option<f64>) -> f64 {
+    match pad {
+        Some(pad) => place.centre[0].hypot(place.centre[1]) - pad,
+        None => place.contact[0] * place.normal[0] + place.contact[1] * place.normal[1],
     }
 }
 
@@ -190,8 +215,8 @@ pub fn examine(cam: &Cam, limits: &Limits) -> Vec<Verdict> {
             places.iter().map(|piece| piece.iter().map(|place| limit.margin(place, pad)).collect()).collect();
         let (angle, margin) = least(&pieces, &sampled, |theta| limit.margin(&cam.place(theta), pad));
         let value = limit.value(&cam.place(angle), pad);
-        let strict = limit == Limit::Undercut;
-        Verdict { limit, value, angle, kept: if strict { margin > 0.0 } else { margin >= 0.0 }, margin }
+        let kept = if limit.is_strict() { margin > 0.0 } else { margin >= 0.0 };
+        Verdict { limit, value, angle, kept, margin }
     };
     limits.list().into_iter().map(verdict).collect()
 }
@@ -210,8 +235,10 @@ pub enum Size {
 pub struct Least {
     /// Radius (m).
     pub size: f64,
-    /// Limit that is met with equality; none where the smallest size that was tried keeps to all.
+    /// Limit that is met with equality; none where the smallest size that was tried keeps to all, and at the end of reach.
     pub active: Option<Limit>,
+    /// `true` if a smaller one does not reach the cam.
+    pub is_at_reach: bool,
     /// Cam of this size.
     pub cam: Cam,
     /// All limits of this cam.
@@ -224,6 +251,7 @@ const RATIO: f64 = 1.1;
 /// Name of what is broken where a follower cannot be built at a size.
 const REACH: &str = "reach of the follower";
 
+/// Another base circle or pad on the same arm. A larger pad leaves the base circle as it is.
 fn resized(cam: &Cam, size: Size, value: f64) -> Result<Cam, CamError> {
     let mut follower = cam.follower;
     match (&mut follower, size) {
@@ -237,14 +265,17 @@ fn resized(cam: &Cam, size: Size, value: f64) -> Result<Cam, CamError> {
         (Follower::Roller { radius, .. } | Follower::OscillatingRoller { radius, .. }, Size::Pad) => {
             *radius = value
         }
-        (_, Size::Pad) => {
-            return Err(CamError::Value("pad", "this follower has no pad whose radius is free".to_string()));
+        (Follower::Rocker { pivot, cam_pad, radius, valve_pad }, _) => {
+            let [x, y] = [0, 1].map(|axis| cam_pad[axis] - pivot[axis]);
+            let side = if x * pivot[1] - y * pivot[0] > 0.0 { Side::Left } else { Side::Right };
+            let sizes = match size {
+                Size::Base => [value, *radius],
+                Size::Pad => [cam.follower.base(), value],
+            };
+            follower = Follower::rocker(sizes[0], *pivot, x.hypot(y), sizes[1], side, *valve_pad)?;
         }
-        (_, Size::Base) => {
-            return Err(CamError::Value(
-                "base circle",
-                "the pad's place fixes the base circle of a rocker".to_string(),
-            ));
+        (Follower::Flat { .. } | Follower::OscillatingFlat { .. }, Size::Pad) => {
+            return Err(CamError::Value("pad", "a flat face has none".to_string()));
         }
     }
     Cam::new(cam.lift.clone(), follower, cam.direction)
@@ -259,7 +290,7 @@ fn resized(cam: &Cam, size: Size, value: f64) -> Result<Cam, CamError> {
 pub fn least_size(cam: &Cam, limits: &Limits, size: Size, range: [f64; 2]) -> Result<Least, CamError> {
     let list = limits.list();
     // Errors of a kind that no size mends.
-    if let Err(CamError::Value(name @ ("pad" | "base circle"), why)) = resized(cam, size, range[0]) {
+    if let Err(CamError::Value(name @ "pad", why)) = resized(cam, size, range[0]) {
         return Err(CamError::Value(name, why));
     }
     let verdicts = |value: f64| resized(cam, size, value).ok().map(|cam| examine(&cam, limits));
@@ -277,15 +308,20 @@ pub fn least_size(cam: &Cam, limits: &Limits, size: Size, range: [f64; 2]) -> Re
             break;
         }
     }
-    if !tried.last().is_some_and(&kept) {
-        return Err(contradiction(&list, &sizes, &tried, &verdicts));
-    }
+    let all_kept = tried.last().is_some_and(&kept);
     let last = tried.len() - 1;
     let finish = |value: f64, active: Option<Limit>| {
         let cam = resized(cam, size, value)?;
         let verdicts = examine(&cam, limits);
-        Ok(Least { size: value, active, cam, verdicts })
+        Ok(Least { size: value, active, is_at_reach: false, cam, verdicts })
     };
+    if !all_kept {
+        // Sizes between two that were tried may keep all: the least of them is where a limit begins to be kept.
+        return match between(&list, &sizes, &tried, &verdicts) {
+            Some((value, active)) => finish(value, Some(active)),
+            None => Err(contradiction(&list, &sizes, &tried, &verdicts)),
+        };
+    }
     if last == 0 {
         return finish(sizes[0], None);
     }
@@ -296,7 +332,7 @@ pub fn least_size(cam: &Cam, limits: &Limits, size: Size, range: [f64; 2]) -> Re
         Some(all) => all.into_iter().filter(|one| !one.kept).map(|one| one.limit).next(),
         None => None,
     };
-    finish(value, active)
+    Ok(Least { is_at_reach: active.is_none(), ..finish(value, active)? })
 }
 
 /// The least margin of all limits, below 0 where one is broken; without bound where there is no cam.
@@ -306,7 +342,7 @@ fn least_margin(verdicts: &Option<Vec<Verdict>>) -> f64 {
     all.iter().map(margin).fold(f64::INFINITY, f64::min)
 }
 
-/// Neighbouring sizes between which `margin` rises through 0, from two sizes with their margins.
+/// Neighbouring sizes between which `margin` rises through 0, from two sizes with their margins. The kept end may be the smaller one.
 ///
 /// Secants with weights that keep both ends moving. Three of them that leave more than half each are followed by a bisection. A secant
 /// goes to the number beyond its place, so that the other end follows. Source: Dowell and Jarratt 1971 (Illinois).
@@ -321,11 +357,13 @@ fn crossing([below, above]: [(f64, f64); 2], margin: impl Fn(f64) -> f64) -> (f6
             break;
         }
         let mut next = middle;
+        // Of a limit that larger sizes break the ends are the other way round.
         if slow < SLOW && of_fails.is_finite() && of_holds > of_fails {
             let share = of_fails / (of_fails - of_holds);
-            let beyond = middle.abs() * if share < 0.5 { f64::EPSILON } else { -f64::EPSILON };
+            let beyond =
+                middle.abs() * width.signum() * if share < 0.5 { f64::EPSILON } else { -f64::EPSILON };
             next = fails + share * width + beyond;
-            if !(next > fails && next < holds) {
+            if !(next > fails.min(holds) && next < fails.max(holds)) {
                 next = middle;
             }
         }
@@ -341,62 +379,83 @@ fn crossing([below, above]: [(f64, f64); 2], margin: impl Fn(f64) -> f64) -> (f6
             if is_kept { of_fails *= 0.5 } else { of_holds *= 0.5 }
         }
         raised = Some(is_kept);
-        slow = if holds - fails <= 0.5 * width || slow == SLOW { 0 } else { slow + 1 };
+        slow = if (holds - fails).abs() <= 0.5 * width.abs() || slow == SLOW { 0 } else { slow + 1 };
     }
     (fails, holds)
 }
 
-/// Halves between a size where `holds` is false and one where it is true, down to neighbours.
-fn halve(mut fails: f64, mut holds_at: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
-    for _ in 0..100 {
-        let middle = 0.5 * (fails + holds_at);
-        if middle == fails || middle == holds_at {
-            break;
-        }
-        if holds(middle) { holds_at = middle } else { fails = middle }
-    }
-    (fails, holds_at)
+/// The size next to the edge of one limit, on its kept side, between a size that breaks it and one that keeps it.
+fn edge(which: usize, ends: [f64; 2], verdicts: &impl Fn(f64) -> Option<Vec<Verdict>>) -> f64 {
+    let alone = |value: f64| least_margin(&verdicts(value).map(|all| all[which..=which].to_vec()));
+    crossing(ends.map(|value| (value, alone(value))), alone).1
 }
 
-/// The limit, or the two limits, that no size keeps.
+/// `true` if the follower can be built and keeps to this limit.
+fn keeps(found: &Option<Vec<Verdict>>, which: usize) -> bool {
+    found.as_ref().is_some_and(|all| all.get(which).is_some_and(|one| one.kept))
+}
+
+/// The least size between two that were tried at which all limits are kept, with the one that begins to be kept there.
+///
+/// Each limit is kept at one end at least.
+fn between(
+    list: &[Limit],
+    sizes: &[f64],
+    tried: &[Option<Vec<Verdict>>],
+    verdicts: &impl Fn(f64) -> Option<Vec<Verdict>>,
+) -> Option<(f64, Limit)> {
+    let is_likely =
+        |k: &usize| (0..list.len()).all(|which| keeps(&tried[*k], which) || keeps(&tried[*k + 1], which));
+    (0..tried.len().saturating_sub(1)).filter(is_likely).find_map(|k| {
+        let begins = |which: &usize| !keeps(&tried[k], *which);
+        let ends = |which: &usize| !keeps(&tried[k + 1], *which);
+        let last = (0..list.len())
+            .filter(begins)
+            .map(|which| (edge(which, [sizes[k], sizes[k + 1]], verdicts), list[which]));
+        let (value, active) = last.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let found = verdicts(value);
+        (0..list.len()).filter(ends).all(|which| keeps(&found, which)).then_some((value, active))
+    })
+}
+
+/// The limit, or the two limits, that no size keeps. Sizes at which the follower cannot be built keep none.
 fn contradiction(
     list: &[Limit],
     sizes: &[f64],
     tried: &[Option<Vec<Verdict>>],
     verdicts: &impl Fn(f64) -> Option<Vec<Verdict>>,
 ) -> CamError {
-    // One more limit: the follower can be built. The others are not judged where it cannot.
-    let of = |found: &Option<Vec<Verdict>>, which: usize| match found {
-        Some(all) => all.get(which).is_none_or(|one| one.kept),
-        None => which < list.len(),
-    };
-    let name = |which: usize| list.get(which).map_or(REACH, Limit::name);
-    let count = list.len() + 1;
-    for which in 0..count {
-        let possible =
-            |found: &Option<Vec<Verdict>>| of(found, which) && (found.is_some() || which == list.len());
-        if !tried.iter().any(possible) {
-            return CamError::Never(name(which));
+    if tried.iter().all(Option::is_none) {
+        return CamError::Never(REACH);
+    }
+    let start = |which: usize| tried.iter().position(|found| keeps(found, which));
+    for (which, limit) in list.iter().enumerate() {
+        if start(which).is_none() {
+            return CamError::Never(limit.name());
         }
     }
-    for first in 0..count {
-        for second in first + 1..count {
-            if tried.iter().any(|found| of(found, first) && of(found, second)) {
+    for first in 0..list.len() {
+        for second in first + 1..list.len() {
+            if tried.iter().any(|found| keeps(found, first) && keeps(found, second)) {
                 continue;
             }
-            let start = |which: usize| tried.iter().position(|found| of(found, which)).unwrap_or(0);
             let (larger, smaller) =
                 if start(first) > start(second) { (first, second) } else { (second, first) };
-            let from = start(larger);
-            let until = tried.iter().rposition(|found| of(found, smaller)).unwrap_or(0);
+            let from = start(larger).unwrap_or(0);
+            let until = tried.iter().rposition(|found| keeps(found, smaller)).unwrap_or(0);
             let least = match from {
                 0 => sizes[0],
-                _ => halve(sizes[from - 1], sizes[from], |value| of(&verdicts(value), larger)).1,
+                _ => edge(larger, [sizes[from - 1], sizes[from]], verdicts),
             };
             let most = match sizes.get(until + 1) {
-                Some(next) => halve(*next, sizes[until], |value| of(&verdicts(value), smaller)).1,
+                Some(next) => edge(smaller, [*next, sizes[until]], verdicts),
                 None => sizes[until],
             };
+            // Both are kept between two sizes that were tried, where a third limit is broken.
+            if least <= most {
+                continue;
+            }
+            let name = |which: usize| list[which].name();
             return CamError::Contradiction { larger: (name(larger), least), smaller: (name(smaller), most) };
         }
     }

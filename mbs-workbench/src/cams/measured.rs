@@ -298,8 +298,20 @@ fn touched(
                 Plane::constant(pivot) + Plane::direction(number(towards) + opened.scaled(sign)).scaled(arm);
             (opened - rest, pad.angle(), centre.angle())
         }
-        Follower::Rocker { .. } => {
-            return Err(CamError::Value("follower", "a profile is read for the other followers".to_string()));
+        Follower::Rocker { pivot, cam_pad, radius, valve_pad } => {
+            let centre = contour + outward.scaled(radius);
+            let (length, towards) = apart(pivot.map(|x| -x));
+            let [cam_arm, valve_arm] = [cam_pad, valve_pad].map(|[x, y]| [x - pivot[0], y - pivot[1]]);
+            let (arm, rest) = apart(cam_arm);
+            // Of the two places at this distance the one on the pad's side at lift 0.
+            let sign = if cam_arm[0] * pivot[1] > cam_arm[1] * pivot[0] { 1.0 } else { -1.0 };
+            let square = centre.dot(centre);
+            let opened = law((number(length * length + arm * arm) - square).scaled(0.5 / (length * arm)))?;
+            let angle = number(towards) + opened.scaled(sign);
+            let pad = Plane::constant(pivot) + Plane::direction(angle).scaled(arm);
+            let valve_arm = Plane::constant(valve_arm);
+            let turned = Plane::direction(angle - number(rest)) * valve_arm;
+            (valve_arm.y - turned.y, pad.angle(), centre.angle())
         }
     };
     let theta = (fixed - of).scaled(sigma);

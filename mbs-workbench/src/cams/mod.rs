@@ -25,7 +25,7 @@ pub mod pitch;
 mod search;
 pub mod shapes;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 /// Fault of a law, a follower or a limit.
 #[derive(Clone, Debug, PartialEq)]

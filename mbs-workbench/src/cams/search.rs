@@ -20,24 +20,30 @@ pub fn pieces(joints: &[f64]) -> Vec<Vec<f64>> {
     joints.windows(2).filter(|pair| pair[1] - pair[0] > 4.0 * BESIDE).map(piece).collect()
 }
 
-/// Argument and value of the least `f` over samples of pieces, each local minimum refined; NaN counts as lowest.
+/// Second differences below this share of the largest value are rounding, as on a dwell.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Argument and value of the least `f` over samples of pieces; NaN counts as lowest.
+///
+/// A local minimum is refined where it may fall below all samples: by no more than the second difference about it.
 pub fn least(pieces: &[Vec<f64>], sampled: &[Vec<f64>], f: impl Fn(f64) -> f64) -> (f64, f64) {
     let mut best = (f64::NAN, f64::INFINITY);
+    for (place, value) in pieces.iter().flatten().zip(sampled.iter().flatten()) {
+        if value.is_nan() {
+            return (*place, f64::NAN);
+        }
+        if *value < best.1 {
+            best = (*place, *value);
+        }
+    }
     for (places, values) in pieces.iter().zip(sampled) {
-        for (k, value) in values.iter().enumerate() {
-            if value.is_nan() {
-                return (places[k], f64::NAN);
-            }
-            if *value < best.1 {
-                best = (places[k], *value);
-            }
-            let inner = k > 0 && k + 1 < values.len();
-            if inner
-                && values[k - 1] >= *value
-                && *value <= values[k + 1]
-                && values[k - 1] + values[k + 1] > 2.0 * value
-            {
-                let found = refine(places[k - 1], places[k + 1], &f);
+        let finite = values.iter().filter(|value| value.is_finite());
+        let noise = ROUNDING * finite.fold(0.0, |most, value| value.abs().max(most));
+        for (k, three) in values.windows(3).enumerate() {
+            let [before, value, after] = [three[0], three[1], three[2]];
+            let bend = before + after - 2.0 * value;
+            if before >= value && value <= after && bend > noise && value - bend < best.1 {
+                let found = refine(places[k], places[k + 2], &f);
                 if found.1 < best.1 {
                     best = found;
                 }

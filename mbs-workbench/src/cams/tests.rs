@@ -66,7 +66,7 @@ fn cams() -> Vec<Cam> {
 /// The contact of the finished contour with the follower: equations in the lift and the place on the contour, by Newton's method.
 ///
 /// It knows points and tangents of the contour, and the follower as a drawing shows it.
-fn solved_lift(cam: &Cam, theta: f64) -> f64 {
+pub fn solved_lift(cam: &Cam, theta: f64) -> f64 {
     let sigma = cam.direction.sign();
     let rotate = |[x, y]: [f64; 2], angle: f64| {
         let (s, c) = angle.sin_cos();
@@ -351,6 +351,29 @@ fn limits_that_contradict_are_named() {
     }
     let never = Limits { outer: Some(0.005), ..Limits::default() };
     assert_eq!(least_size(&cam, &never, Size::Base, [0.012, 0.1]), Err(CamError::Never("outer radius")));
+}
+
+/// Sizes that keep all limits, between two that are tried: 2 % where steps are 10 %.
+#[test]
+fn a_narrow_window_of_sizes_is_found() {
+    let law = Lift::flanks(Flank::Polynomial4567, 0.01, [1.4, 0.3, 1.4]).expect("a law");
+    let roller = Follower::Roller { base: 1.0, radius: 0.008, offset: 0.0 };
+    let cam = Cam::new(law, roller, Direction::CounterClockwise).expect("a cam");
+    let slope = Limits { pressure_angle: Some(0.4), ..Limits::default() };
+    let find = |limits: &Limits, range: [f64; 2]| least_size(&cam, limits, Size::Base, range);
+    let alone = find(&slope, [0.012, 0.1]).expect("a cam").size;
+    let range = [0.8 * alone, 1.3 * alone];
+    let limits = Limits { outer: Some(1.02 * alone + 0.01), ..slope };
+    let least = find(&limits, range).expect("a window");
+    assert!(
+        (least.size - alone).abs() < 1e-14 && least.active == Some(Limit::PressureAngle(0.4)),
+        "{least:?}"
+    );
+    let narrower = Limits { outer: Some(0.999 * alone + 0.01), ..slope };
+    match find(&narrower, range) {
+        Err(CamError::Contradiction { larger, smaller }) => assert!(larger.1 > smaller.1),
+        other => panic!("{other:?}"),
+    }
 }
 
 #[test]

@@ -4,15 +4,17 @@ use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::CommandError;
 pub use super::cam_options::Arguments;
-use super::cam_options::{Sense, Sizes};
+use super::cam_options::Sizes;
 use super::chosen::write_file;
 use super::document::Output;
+use super::law_options::GivenLaw;
 use crate::cams::files::{csv, dxf, rust, svg, turn};
 use crate::cams::follower::{Cam, Direction, Follower};
+use crate::cams::lift::Lift;
 use crate::cams::limits::{Least, Size, Verdict, examine, least_size};
 use crate::cams::measured::Profile;
 use crate::cams::{noise, page};
@@ -32,84 +34,142 @@ fn shown(name: &str, value: f64) -> String {
     }
 }
 
+/// A cam with its limits. Opener and closer of a pair have names.
+struct Made {
+    name: &'static str,
+    cam: Cam,
+    verdicts: Vec<Verdict>,
+    least: Option<Least>,
+}
+
+impl Made {
+    fn of(
+        arguments: &Arguments,
+        lift: &Lift,
+        (name, follower): (&'static str, Follower),
+        direction: Direction,
+    ) -> Result<Self, CommandError> {
+        let limits = arguments.limits();
+        let Some(size) = arguments.least else {
+            let cam = Cam::new(lift.clone(), follower, direction)?;
+            let verdicts = examine(&cam, &limits);
+            return Ok(Made { name, cam, verdicts, least: None });
+        };
+        let size = if size == Sizes::Base { Size::Base } else { Size::Pad };
+        // From a tenth to a hundred times what the follower moves, or is away.
+        let scale = follower.pivot().map_or_else(
+            || arguments.of_law.height(arguments.turns()).unwrap_or(0.01),
+            |[x, y]| 0.5 * x.hypot(y),
+        );
+        let cam = Cam { lift: lift.clone(), follower, direction };
+        let found = least_size(&cam, &limits, size, [0.03 * scale, 100.0 * scale])?;
+        let (cam, verdicts) = (found.cam.clone(), found.verdicts.clone());
+        Ok(Made { name, cam, verdicts, least: Some(found) })
+    }
+}
+
+/// All cams of the command. The cams of a pair work against each other.
+fn cams(arguments: &Arguments, lift: &Lift) -> Result<Vec<Made>, CommandError> {
+    let direction = arguments.direction();
+    let followers = arguments.followers()?;
+    let made = |follower: (&'static str, Follower)| {
+        Made::of(arguments, lift, follower, direction).map_err(|error| match error {
+            CommandError::Failed(why) if !follower.0.is_empty() => {
+                CommandError::Failed(format!("{}: {why}", follower.0))
+            }
+            other => other,
+        })
+    };
+    let all = followers.into_iter().map(made).collect::<Result<Vec<_>, _>>()?;
+    for (one, opens) in all.iter().zip([true, false]) {
+        if all.len() == 2 && one.cam.opens() != Some(opens) {
+            let does = if opens { "closes" } else { "opens" };
+            return Err(CommandError::Failed(format!(
+                "{}: its cam {does} the valve\nhelp: put its pad on the other `--side`, or its valve pad on the other side of the pivot",
+                one.name
+            )));
+        }
+    }
+    Ok(all)
+}
+
 /// Makes the profile of a cam, says where limits are broken, writes page, CSV and DXF, or prints a Rust constant.
 pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
-    let follower = arguments.the_follower()?;
-    let direction =
-        if arguments.direction == Sense::Cw { Direction::Clockwise } else { Direction::CounterClockwise };
     if arguments.measured {
-        return recover(arguments, &follower, direction, out);
+        return recover(arguments, out);
     }
-    let (lift, source) = arguments.law()?;
+    let GivenLaw { lift, source, table } = arguments.law()?;
+    let all = cams(arguments, &lift)?;
     let limits = arguments.limits();
-    let least = match arguments.least {
-        None => None,
-        Some(size) => {
-            let size = if size == Sizes::Base { Size::Base } else { Size::Pad };
-            // From a tenth to a hundred times what the follower moves, or is away.
-            let scale = follower.pivot().map_or_else(
-                || arguments.of_law.height(arguments.turns()).unwrap_or(0.01),
-                |[x, y]| 0.5 * x.hypot(y),
-            );
-            let cam = Cam { lift: lift.clone(), follower, direction };
-            Some(least_size(&cam, &limits, size, [0.03 * scale, 100.0 * scale])?)
-        }
-    };
-    let (cam, verdicts) = match &least {
-        Some(found) => (found.cam.clone(), found.verdicts.clone()),
-        None => {
-            let cam = Cam::new(lift, follower, direction)?;
-            let verdicts = examine(&cam, &limits);
-            (cam, verdicts)
-        }
-    };
     let name = PathBuf::from(&arguments.law)
         .file_name()
         .map_or_else(|| "cam".into(), |n| n.to_string_lossy().into_owned());
-    let places = turn(&cam, 720);
+    let places: Vec<_> = all.iter().map(|one| turn(&one.cam, 720)).collect();
     if let Some(constant) = &arguments.rust {
-        let code = rust(constant, &name, &places).map_err(CommandError::Failed)?;
+        let mut code = String::new();
+        for (one, places) in all.iter().zip(&places) {
+            let suffix = one.name.to_uppercase();
+            let constant = if suffix.is_empty() { constant.clone() } else { format!("{constant}_{suffix}") };
+            code += &rust(&constant, &name, places).map_err(CommandError::Failed)?;
+        }
         out.put("code", &code);
         return Ok(out.write_all(code.as_bytes())?);
     }
     let origin = Origin::of_table(&name, &source);
     let directory = arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join("cam"));
-    let sentence = sentence(arguments, &cam, &verdicts, least.as_ref());
+    let sentences: Vec<String> = all.iter().map(|one| sentence(arguments, one)).collect();
+    let of_table = table.iter().map(|table| format!("Lift law: {table}."));
+    let sentence = sentences.iter().cloned().chain(of_table).collect::<Vec<_>>().join(" ");
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--json").collect();
     let quoted = |word: &String| if word.contains(' ') { format!("'{word}'") } else { word.clone() };
     let command = format!("mbs {}", words.iter().map(quoted).collect::<Vec<_>>().join(" "));
-    let mut data = page::data(&format!("Cam {name}"), &sentence, &command, &cam, &limits, &verdicts);
-    let noise = arguments.noise()?.map(|width| noise::study(&cam.lift, width)).transpose();
+    let parts: Vec<page::Part<'_>> = all
+        .iter()
+        .zip(&places)
+        .map(|(one, places)| page::Part { name: one.name, cam: &one.cam, places, verdicts: &one.verdicts })
+        .collect();
+    let mut data = page::data(&format!("Cam {name}"), &sentence, &command, &limits, &parts);
+    let noise = arguments.noise()?.map(|width| noise::study(&lift, width)).transpose();
     let noise = noise.map_err(|error| CommandError::Failed(error.to_string()))?;
     data["noise"] = noise.as_ref().map(page::noise).into();
-    let files = [
-        ("page", "cam.html", page::html(&data, &origin.line())),
-        ("profile", "profile.csv", origin.csv(&csv(&places, cam.follower.lifts_by_angle()))),
-        ("drawing", "profile.dxf", dxf(&places)),
-        ("picture", "profile.svg", origin.svg(&svg(&places, cam.follower.base()))),
-    ];
-    for (kind, file, text) in files {
+    let mut files = vec![("page", "cam.html".to_string(), page::html(&data, &origin.line()))];
+    for (one, places) in all.iter().zip(&places) {
+        let stem = if one.name.is_empty() { "profile" } else { one.name };
+        let file = |ending: &str| format!("{stem}.{ending}");
+        files.push(("profile", file("csv"), origin.csv(&csv(places, &one.cam.follower))));
+        files.push(("drawing", file("dxf"), dxf(places)));
+    }
+    let contours: Vec<_> =
+        all.iter().zip(&places).map(|(one, places)| (places.as_slice(), one.cam.follower.base())).collect();
+    files.push(("picture", "profile.svg".to_string(), origin.svg(&svg(&contours))));
+    for (kind, file, text) in &files {
         let path = directory.join(file);
-        write_file(&path, &text)?;
+        write_file(&path, text)?;
         out.put_file(kind, &path);
     }
-    describe(out, &cam, &verdicts, least.as_ref(), &sentence);
-    print(out, &cam, &verdicts, &sentence)?;
+    describe(out, &all, &sentences);
+    out.put("table", &table);
+    print_law(out, &lift, table.as_deref(), arguments.turns(), &sentences)?;
+    for one in &all {
+        print_limits(out, one)?;
+    }
     if let Some(study) = &noise {
         out.put("noise", page::noise(study));
-        print_noise(out, study, cam.follower.lifts_by_angle())?;
+        print_noise(out, study, arguments.turns())?;
     }
-    writeln!(out, "files        {}: cam.html, profile.csv, profile.dxf, profile.svg", directory.display())?;
+    let names: Vec<&str> = files.iter().map(|(_, file, _)| file.as_str()).collect();
+    writeln!(out, "files        {}: {}", directory.display(), names.join(", "))?;
     Ok(())
 }
 
 /// The lift of a measured profile, as a table.
-fn recover(
-    arguments: &Arguments,
-    follower: &Follower,
-    direction: Direction,
-    out: &mut Output,
-) -> Result<(), CommandError> {
+fn recover(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+    let followers = arguments.followers()?;
+    let [(_, follower)] = followers.as_slice() else {
+        let why =
+            "a measured profile has one follower\nhelp: read each cam of a pair with `--follower rocker`";
+        return Err(CommandError::Usage(why.to_string()));
+    };
     let named = |message: String| CommandError::Failed(format!("{}: {message}", arguments.law));
     let bytes = fs::read(&arguments.law).map_err(|error| named(format!("cannot be read: {error}")))?;
     let points = read_unordered(&bytes, arguments.of_law.columns.as_ref())
@@ -123,7 +183,7 @@ fn recover(
             return Err(named(why.to_string()));
         }
     };
-    let found = profile.and_then(|profile| profile.motion(follower, direction));
+    let found = profile.and_then(|profile| profile.motion(follower, arguments.direction()));
     let found = found.map_err(|error| named(error.to_string()))?;
     let by_angle = follower.lifts_by_angle();
     let (unit, factor) = if by_angle { ("deg", 1_f64.to_degrees()) } else { ("mm", 1e3) };
@@ -186,7 +246,8 @@ fn print_noise(out: &mut Output, study: &noise::Study, by_angle: bool) -> Result
     Ok(())
 }
 
-fn sentence(arguments: &Arguments, cam: &Cam, verdicts: &[Verdict], least: Option<&Least>) -> String {
+fn sentence(arguments: &Arguments, one: &Made) -> String {
+    let Made { cam, verdicts, least, .. } = one;
     let broken: Vec<String> = verdicts
         .iter()
         .filter(|one| !one.kept)
@@ -197,63 +258,97 @@ fn sentence(arguments: &Arguments, cam: &Cam, verdicts: &[Verdict], least: Optio
     } else {
         format!("breaks {}", broken.join(", "))
     };
-    let mut text = format!("Base circle of {:.5} mm: the cam {state}.", 1e3 * cam.follower.base());
-    if let (Some(found), Some(size)) = (least, arguments.least) {
-        let size = if size == Sizes::Base { "base circle" } else { "pad" };
-        text = match found.active {
-            Some(limit) => format!(
-                "The least {size} has a radius of {:.6} mm: a smaller one breaks the limit on the {} of {}.",
-                1e3 * found.size,
-                limit.name(),
-                shown(limit.name(), limit.bound())
-            ),
-            None => format!(
-                "A {size} of {:.6} mm, the smallest that is tried, keeps all limits.",
-                1e3 * found.size
-            ),
-        };
+    let kind = match cam.opens() {
+        Some(true) => "opening cam",
+        Some(false) => "closing cam",
+        None => "cam",
+    };
+    let (Some(found), Some(size)) = (least, arguments.least) else {
+        return format!("Base circle of {:.5} mm: the {kind} {state}.", 1e3 * cam.follower.base());
+    };
+    let size = if size == Sizes::Base { "base circle" } else { "pad" };
+    let of = if kind == "cam" { String::new() } else { format!(" of the {kind}") };
+    match found.active {
+        Some(limit) => format!(
+            "The least {size}{of} has a radius of {:.6} mm: a smaller one breaks the limit on the {} of {}.",
+            1e3 * found.size,
+            limit.name(),
+            shown(limit.name(), limit.bound())
+        ),
+        None if found.is_at_reach => format!(
+            "The least {size}{of} has a radius of {:.6} mm: with a smaller one the follower does not reach the cam.",
+            1e3 * found.size
+        ),
+        None => format!(
+            "A {size}{of} of {:.6} mm, the smallest that is tried, keeps all limits.",
+            1e3 * found.size
+        ),
     }
-    text
 }
 
-fn describe(out: &mut Output, cam: &Cam, verdicts: &[Verdict], least: Option<&Least>, sentence: &str) {
-    let continuity = cam.lift.continuity();
-    out.put("sentence", sentence);
-    out.put(
-        "continuity",
-        json!({ "stated": continuity.stated, "jumps": continuity.jumps, "confirmed": continuity.confirms() }),
-    );
-    out.put("base", cam.follower.base());
-    out.put("pad", cam.follower.pad());
+fn describe(out: &mut Output, all: &[Made], sentences: &[String]) {
     let verdict = |one: &Verdict| {
         json!({
             "name": one.limit.name(), "bound": one.limit.bound(), "value": page::finite(one.value), "angle": one.angle, "kept": one.kept,
         })
     };
-    out.put("limits", verdicts.iter().map(verdict).collect::<Vec<_>>());
-    out.put("active", least.and_then(|found| found.active).map(|limit| limit.name()));
+    let fields = |one: &Made, sentence: &str| {
+        let limits = one.verdicts.iter().map(verdict).collect::<Vec<_>>();
+        let active = one.least.as_ref().and_then(|found| found.active).map(|limit| limit.name());
+        json!({
+            "sentence": sentence, "base": one.cam.follower.base(), "pad": one.cam.follower.pad(), "limits": limits, "active": active,
+        })
+    };
+    if let Some(continuity) = all.first().map(|one| one.cam.lift.continuity()) {
+        out.put(
+            "continuity",
+            json!({ "stated": continuity.stated, "jumps": continuity.jumps, "confirmed": continuity.confirms() }),
+        );
+    }
+    for (one, sentence) in all.iter().zip(sentences) {
+        let fields = fields(one, sentence);
+        // A single cam has its fields at the top.
+        match fields {
+            Value::Object(fields) if one.name.is_empty() => {
+                fields.into_iter().for_each(|(field, value)| out.put(&field, value));
+            }
+            fields => out.put(one.name, fields),
+        }
+    }
 }
 
-fn print(out: &mut Output, cam: &Cam, verdicts: &[Verdict], sentence: &str) -> Result<(), CommandError> {
-    writeln!(out, "{sentence}")?;
-    let continuity = cam.lift.continuity();
+fn print_law(
+    out: &mut Output,
+    lift: &Lift,
+    table: Option<&str>,
+    by_angle: bool,
+    sentences: &[String],
+) -> Result<(), CommandError> {
+    for sentence in sentences {
+        writeln!(out, "{sentence}")?;
+    }
+    let continuity = lift.continuity();
     let checked = if continuity.confirms() { "checked at its joints" } else { "NOT confirmed at its joints" };
-    writeln!(out, "law          {} continuous derivatives, {checked}", continuity.stated)?;
+    let table = table.map_or_else(String::new, |table| format!("; {table}"));
+    writeln!(out, "law          {} continuous derivatives, {checked}{table}", continuity.stated)?;
     for order in 0..3 {
         let (name, unit) = [("lift", ""), ("velocity", "/rad"), ("acceleration", "/rad^2")][order];
-        let values: Vec<f64> = (0..720)
-            .map(|k| cam.lift.jet(cam.lift.origin() + f64::from(k).to_radians() / 2.0)[order])
-            .collect();
+        let values: Vec<f64> =
+            (0..720).map(|k| lift.jet(lift.origin() + f64::from(k).to_radians() / 2.0)[order]).collect();
         let [low, high] = [
             values.iter().copied().fold(f64::INFINITY, f64::min),
             values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         ];
-        let (factor, base) =
-            if cam.follower.lifts_by_angle() { (1_f64.to_degrees(), "deg") } else { (1e3, "mm") };
+        let (factor, base) = if by_angle { (1_f64.to_degrees(), "deg") } else { (1e3, "mm") };
         writeln!(out, "{name:<13}{:.4} to {:.4} {base}{unit}", factor * low, factor * high)?;
     }
-    writeln!(out, "{:<22}{:>16}{:>16}{:>12}", "limit", "bound", "value", "at")?;
-    for one in verdicts {
+    Ok(())
+}
+
+fn print_limits(out: &mut Output, one: &Made) -> Result<(), CommandError> {
+    let head = if one.name.is_empty() { "limit".to_string() } else { format!("{}: limit", one.name) };
+    writeln!(out, "{head:<22}{:>16}{:>16}{:>12}", "bound", "value", "at")?;
+    for one in &one.verdicts {
         let sign = if one.limit.is_least() { ">" } else { "<" };
         let bound = format!("{sign} {}", shown(one.limit.name(), one.limit.bound()));
         let mark = if one.kept { "" } else { "  broken" };
@@ -262,3 +357,6 @@ fn print(out: &mut Output, cam: &Cam, verdicts: &[Verdict], sentence: &str) -> R
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

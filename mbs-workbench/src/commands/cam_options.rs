@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, Parser, ValueEnum};
 
 use super::CommandError;
-use super::law_options::{LawOptions, angle, in_unit, length, number, usage};
+use super::law_options::{GivenLaw, LawOptions, angle, in_unit, length, number, usage};
 use crate::cams::CamError;
-use crate::cams::follower::{Follower, Side};
-use crate::cams::lift::Lift;
+use crate::cams::follower::{Direction, Follower, Side};
 use crate::cams::limits::{Limits, Load};
 use crate::tables::constant;
 
@@ -23,6 +22,10 @@ pub enum Kinds {
     OscillatingFlat,
     /// Roller or round pad on an arm
     OscillatingRoller,
+    /// Arm with a roller or pad on the cam, and a pad on the flat end of a valve that opens along -y
+    Rocker,
+    /// Two rockers on one shaft, the second one by `--closer`: one cam opens the valve, the other one closes it
+    Desmodromic,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -49,21 +52,10 @@ pub enum Sizes {
     Pad,
 }
 
-/// Options of `mbs cam`.
-#[derive(Args)]
-pub struct Arguments {
-    /// Law: `even:2,6,8,10,12`, `345`, `4567`, `cycloid`, `modified-sine`, `modified-trapezoid`, `harmonic`, `constant-velocity`;
-    /// `bspline:FILE` or `bspline:degree 5; knots …; at …`; or a table of the lift over one turn as CSV
-    pub law: String,
-    /// Kind of follower
-    #[arg(long, value_enum)]
-    pub follower: Kinds,
-    #[command(flatten)]
-    pub of_law: LawOptions,
-    /// The file is a measured profile about the cam's centre, polar as "deg, mm" or x and y as "mm, mm": find its lift
-    #[arg(long, conflicts_with_all = ["lift", "least", "rust", "polydyne"])]
-    pub measured: bool,
-    /// Radius of the base circle
+/// Dimensions of a follower.
+#[derive(Args, Clone, Debug)]
+pub struct Dimensions {
+    /// Radius of the base circle, of the contour at lift 0
     #[arg(long, value_name = "17mm", value_parser = length)]
     base: Option<f64>,
     /// Radius of the roller or pad
@@ -84,9 +76,41 @@ pub struct Arguments {
     /// Side of an arm, seen from its pivot
     #[arg(long, value_enum, default_value = "left")]
     side: Sides,
+    /// Centre of a rocker's pad on the valve at lift 0, from the cam's centre
+    #[arg(long, value_name = "-12mm,-12mm", value_parser = point, allow_hyphen_values = true)]
+    valve_pad: Option<[f64; 2]>,
+}
+
+/// The second rocker of a pair, in one text.
+#[derive(Parser)]
+#[command(name = "CLOSER", no_binary_name = true, disable_help_flag = true)]
+struct Closer {
+    #[command(flatten)]
+    dimensions: Dimensions,
+}
+
+/// Options of `mbs cam`.
+#[derive(Args)]
+pub struct Arguments {
+    /// Law: `even:2,6,8,10,12`, `345`, `4567`, `cycloid`, `modified-sine`, `modified-trapezoid`, `harmonic`, `constant-velocity`;
+    /// `bspline:FILE` or `bspline:degree 5; knots …; at …`; or a table of the lift over one turn as CSV
+    pub law: String,
+    /// Kind of follower
+    #[arg(long, value_enum)]
+    pub follower: Kinds,
+    #[command(flatten)]
+    pub of_law: LawOptions,
+    /// The file is a measured profile about the cam's centre, polar as "deg, mm" or x and y as "mm, mm": find its lift
+    #[arg(long, conflicts_with_all = ["lift", "least", "rust", "polydyne"])]
+    pub measured: bool,
+    #[command(flatten)]
+    dimensions: Dimensions,
+    /// Dimensions of the rocker that closes the valve
+    #[arg(long, value_name = "\"--base 17mm …\"", allow_hyphen_values = true)]
+    closer: Option<String>,
     /// Sense of the cam's rotation
     #[arg(long, value_enum, default_value = "ccw")]
-    pub direction: Sense,
+    direction: Sense,
     /// Noise of a table of the lift, its whole width: tell that of the acceleration against points and knots
     #[arg(long, value_name = "1um", conflicts_with_all = ["measured", "rust"])]
     noise: Option<String>,
@@ -105,6 +129,9 @@ pub struct Arguments {
     /// Largest radius of the contour
     #[arg(long, value_name = "40mm", value_parser = length)]
     outer: Option<f64>,
+    /// Radius of the shaft, which the follower stays clear of [default: 0mm, the cam's centre alone]
+    #[arg(long, value_name = "9mm", value_parser = length)]
+    shaft: Option<f64>,
     /// Half the width of a flat face
     #[arg(long, value_name = "16mm", value_parser = length)]
     half_face: Option<f64>,
@@ -173,52 +200,39 @@ impl Arguments {
         }
     }
 
-    pub fn law(&self) -> Result<(Lift, Vec<u8>), CommandError> {
+    pub fn law(&self) -> Result<GivenLaw, CommandError> {
         self.of_law.law(&self.law, self.turns())
     }
 
-    pub fn the_follower(&self) -> Result<Follower, CommandError> {
-        let needed = |value: Option<f64>, option: &str| {
-            value.ok_or_else(|| {
-                usage(format!("this follower needs `{option}`\nhelp: `mbs cam --help` tells its dimensions"))
-            })
-        };
-        let pivot = || self.pivot.ok_or_else(|| usage("an oscillating follower needs `--pivot 60mm,10mm`"));
-        // Where the size is sought, any one at which the follower can be built begins.
-        let side = if self.side == Sides::Left { Side::Left } else { Side::Right };
-        let base = match self.least {
-            Some(Sizes::Base) => self.base.unwrap_or(f64::NAN),
-            _ => needed(self.base, "--base 17mm")?,
-        };
-        let radius = || match self.least {
-            Some(Sizes::Pad) => Ok(self.roller.unwrap_or(f64::NAN)),
-            _ => needed(self.roller, "--roller 8mm"),
-        };
-        let foreign = |is_given: bool, option: &str| {
-            if is_given {
-                Err(usage(format!("`{option}` belongs to another follower\nhelp: leave it out")))
-            } else {
-                Ok(())
-            }
-        };
+    pub fn direction(&self) -> Direction {
+        if self.direction == Sense::Cw { Direction::Clockwise } else { Direction::CounterClockwise }
+    }
+
+    /// Followers with their names: one without, or opener and closer of a pair.
+    pub fn followers(&self) -> Result<Vec<(&'static str, Follower)>, CommandError> {
         let is_flat = matches!(self.follower, Kinds::Flat | Kinds::OscillatingFlat);
-        foreign(self.roller.is_some() && is_flat, "--roller")?;
         foreign(self.half_face.is_some() && !is_flat, "--half-face")?;
-        foreign(self.offset.is_some() && self.follower != Kinds::Roller, "--offset")?;
-        foreign(self.pivot.is_some() && !self.turns(), "--pivot")?;
-        foreign(self.arm.is_some() && self.follower != Kinds::OscillatingRoller, "--arm")?;
-        foreign(self.face.is_some() && self.follower != Kinds::OscillatingFlat, "--face")?;
-        Ok(match self.follower {
-            Kinds::Flat => Follower::Flat { base },
-            Kinds::Roller => Follower::Roller { base, radius: radius()?, offset: self.offset.unwrap_or(0.0) },
-            Kinds::OscillatingFlat => {
-                Follower::OscillatingFlat { base, pivot: pivot()?, face: self.face.unwrap_or(0.0), side }
-            }
-            Kinds::OscillatingRoller => {
-                let arm = needed(self.arm, "--arm 55mm")?;
-                Follower::OscillatingRoller { base, pivot: pivot()?, arm, radius: radius()?, side }
-            }
-        })
+        let is_pair = self.follower == Kinds::Desmodromic;
+        foreign(self.closer.is_some() && !is_pair, "--closer")?;
+        let first = self.dimensions.follower(self.follower, self.least)?;
+        if !is_pair {
+            return Ok(vec![("", first)]);
+        }
+        let example = "--closer \"--base 17mm --pivot 23mm,-29mm --arm 29mm --roller 12mm --side right --valve-pad -12mm,-32mm\"";
+        let text = self.closer.as_ref().ok_or_else(|| {
+            usage(format!("a desmodromic pair needs the rocker that closes\nhelp: say `{example}`"))
+        })?;
+        let closer = Closer::try_parse_from(text.split_whitespace()).map_err(|error| {
+            let text = error.to_string();
+            let line = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            usage(format!("`--closer`: {line}\nhelp: write `{example}`"))
+        })?;
+        let second = closer.dimensions.follower(self.follower, self.least).map_err(|error| match error {
+            CommandError::Usage(why) => usage(format!("`--closer`: {why}")),
+            CommandError::Failed(why) => CommandError::Failed(format!("closer: {why}")),
+            other => other,
+        })?;
+        Ok(vec![("opener", first), ("closer", second)])
     }
 
     pub fn limits(&self) -> Limits {
@@ -231,6 +245,75 @@ impl Arguments {
             hertz: self.hertz.zip(load),
             half_face: self.half_face,
             outer: self.outer,
+            shaft: self.shaft,
         }
+    }
+}
+
+fn foreign(is_given: bool, option: &str) -> Result<(), CommandError> {
+    if is_given {
+        Err(usage(format!("`{option}` belongs to another follower\nhelp: leave it out")))
+    } else {
+        Ok(())
+    }
+}
+
+impl Dimensions {
+    /// The follower of these dimensions. Where its size is sought, any one of the same arm.
+    fn follower(&self, kind: Kinds, least: Option<Sizes>) -> Result<Follower, CommandError> {
+        let needed = |value: Option<f64>, option: &str| {
+            value.ok_or_else(|| {
+                usage(format!("this follower needs `{option}`\nhelp: `mbs cam --help` tells its dimensions"))
+            })
+        };
+        let is_rocker = matches!(kind, Kinds::Rocker | Kinds::Desmodromic);
+        let has_arm = is_rocker || kind == Kinds::OscillatingRoller;
+        let is_flat = matches!(kind, Kinds::Flat | Kinds::OscillatingFlat);
+        foreign(self.roller.is_some() && is_flat, "--roller")?;
+        foreign(self.offset.is_some() && kind != Kinds::Roller, "--offset")?;
+        foreign(self.pivot.is_some() && !(has_arm || kind == Kinds::OscillatingFlat), "--pivot")?;
+        foreign(self.arm.is_some() && !has_arm, "--arm")?;
+        foreign(self.face.is_some() && kind != Kinds::OscillatingFlat, "--face")?;
+        foreign(self.valve_pad.is_some() && !is_rocker, "--valve-pad")?;
+        let pivot = || self.pivot.ok_or_else(|| usage("a follower on an arm needs `--pivot 60mm,10mm`"));
+        let side = if self.side == Sides::Left { Side::Left } else { Side::Right };
+        let base = || match least {
+            Some(Sizes::Base) => Ok(self.base.unwrap_or(f64::NAN)),
+            _ => needed(self.base, "--base 17mm"),
+        };
+        let radius = || match least {
+            Some(Sizes::Pad) => Ok(self.roller.unwrap_or(f64::NAN)),
+            _ => needed(self.roller, "--roller 8mm"),
+        };
+        let arm = || needed(self.arm, "--arm 55mm");
+        Ok(match kind {
+            Kinds::Flat => Follower::Flat { base: base()? },
+            Kinds::Roller => {
+                Follower::Roller { base: base()?, radius: radius()?, offset: self.offset.unwrap_or(0.0) }
+            }
+            Kinds::OscillatingFlat => {
+                let face = self.face.unwrap_or(0.0);
+                Follower::OscillatingFlat { base: base()?, pivot: pivot()?, face, side }
+            }
+            Kinds::OscillatingRoller => {
+                let (base, pivot, arm, radius) = (base()?, pivot()?, arm()?, radius()?);
+                Follower::OscillatingRoller { base, pivot, arm, radius, side }
+            }
+            Kinds::Rocker | Kinds::Desmodromic => {
+                let valve_pad =
+                    self.valve_pad.ok_or_else(|| usage("a rocker needs `--valve-pad -12mm,-12mm`"))?;
+                let (base, pivot, arm, radius) = (base()?, pivot()?, arm()?, radius()?);
+                let Some(size) = least else {
+                    return Ok(Follower::rocker(base, pivot, arm, radius, side, valve_pad)?);
+                };
+                // At a right angle, until the size that is sought places it.
+                let [x, y] = pivot;
+                let apart = x.hypot(y);
+                let across = if side == Side::Left { arm / apart } else { -arm / apart };
+                let radius = if size == Sizes::Base { radius } else { apart.hypot(arm) - base };
+                let cam_pad = [x + across * y, y - across * x];
+                Follower::Rocker { pivot, cam_pad, radius, valve_pad }
+            }
+        })
     }
 }

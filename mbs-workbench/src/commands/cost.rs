@@ -364,6 +364,7 @@ pub fn study(
     fact("machine", machine());
     fact("program", format!("mbs {}, release profile", env!("CARGO_PKG_VERSION")));
     fact("text", origin.hash.clone());
+    facts.extend(super::functions::facts());
     let judged =
         if arguments.watch.is_empty() { "coordinates".to_string() } else { arguments.watch.join(", ") };
     let result = CostResult {

@@ -315,7 +315,11 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         title: subject.title.clone(),
         origin: origin.line(),
         command: command(arguments),
-        facts: facts.map(|(name, value)| [name.to_string(), value]).to_vec(),
+        facts: facts
+            .map(|(name, value)| [name.to_string(), value])
+            .into_iter()
+            .chain(super::functions::facts())
+            .collect(),
     };
     out.put("result", result.document());
     effects_words::print(&result, out)?;

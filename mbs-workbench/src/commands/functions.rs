@@ -27,7 +27,17 @@ const OF_LAWS: usize = 3;
 
 /// A function that the command line gives: a spline along a table, or a lift law.
 #[derive(Clone, Debug)]
-pub struct GivenFunction(Arc<Form>);
+pub struct GivenFunction(Arc<Given>);
+
+#[derive(Debug)]
+struct Given {
+    form: Form,
+    /// Table or law in words.
+    said: String,
+}
+
+/// The functions that this program has, by their names.
+static MADE: Mutex<BTreeMap<String, GivenFunction>> = Mutex::new(BTreeMap::new());
 
 #[derive(Debug)]
 enum Form {
@@ -91,7 +101,17 @@ pub fn require(text: &TextFile) -> Result<(), CommandError> {
             options.join(" ")
         )));
     }
-    text.functions.iter().try_for_each(|function| made(function, &given).map(|_| ()))
+    let mut known = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    for function in &text.functions {
+        known.insert(function.name.clone(), made(function, &given)?);
+    }
+    Ok(())
+}
+
+/// Facts of a page: the functions of the command line, each with the file and the points of its table, or with its law.
+pub fn facts() -> Vec<[String; 2]> {
+    let known = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    known.iter().map(|(name, function)| [format!("function {name}"), function.0.said.clone()]).collect()
 }
 
 /// Refuses the option where no text in a file is named.
@@ -110,7 +130,6 @@ pub fn refuse_without_file() -> Result<(), CommandError> {
 pub fn given_function(
     (name, unit, argument_unit, continuity, period): (&str, &str, &str, u8, Option<f64>),
 ) -> GivenFunction {
-    static MADE: Mutex<BTreeMap<String, GivenFunction>> = Mutex::new(BTreeMap::new());
     let mut known = MADE.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(function) = known.get(name) {
         return function.clone();
@@ -165,7 +184,8 @@ fn made(declared: &DeclaredFunction, given: &[(String, String)]) -> Result<Given
         return Err(usage(format!("the function `{name}` is missing: `{OPTION} {name}=FILE.csv`")));
     };
     let named = |why: String| usage(format!("`{OPTION} {name}=…`: {why}"));
-    let form = if is_law(form) { law(declared, form)? } else { table(declared, form)? };
+    let (form, said) =
+        if is_law(form) { (law(declared, form)?, format!("law {form}")) } else { table(declared, form)? };
     let order = match &form {
         Form::Table(spline) => spline.order(),
         Form::Law(lift) => lift.order().min(OF_LAWS),
@@ -183,7 +203,7 @@ fn made(declared: &DeclaredFunction, given: &[(String, String)]) -> Result<Given
             declared.continuity
         )));
     }
-    Ok(GivenFunction(Arc::new(form)))
+    Ok(GivenFunction(Arc::new(Given { form, said })))
 }
 
 /// A lift law: a length, or an angle, over an angle.
@@ -199,14 +219,14 @@ fn law(declared: &DeclaredFunction, form: &str) -> Result<Form, CommandError> {
     if period.is_some_and(|period| (period - TAU).abs() > 1e-12) {
         return Err(named("a law repeats after a turn, and the text declares another period".to_string()));
     }
-    law_options::written_for(form, turns).map(Form::Law).map_err(|error| match error {
+    law_options::written_for(form, turns).map(|given| Form::Law(given.lift)).map_err(|error| match error {
         CommandError::Usage(why) => named(why),
         other => other,
     })
 }
 
 /// A table, its units behind the last colon or in its header.
-fn table(declared: &DeclaredFunction, form: &str) -> Result<Form, CommandError> {
+fn table(declared: &DeclaredFunction, form: &str) -> Result<(Form, String), CommandError> {
     let DeclaredFunction { name, unit, argument_unit, period, .. } = declared;
     let named = |why: String| usage(format!("`{OPTION} {name}=…`: {why}"));
     // Units have a comma between them, the rest of a path after a drive's letter has a slash.
@@ -248,6 +268,7 @@ fn table(declared: &DeclaredFunction, form: &str) -> Result<Form, CommandError> 
             up.name, across.name
         )));
     }
+    let said = law_options::named_table(path, points.x.len());
     let kind = match period {
         Some(period) => {
             close_period(&mut points, *period).map_err(|fault| of_file(fault.to_string()))?;
@@ -256,7 +277,7 @@ fn table(declared: &DeclaredFunction, form: &str) -> Result<Form, CommandError> 
         None => SplineKind::Cubic([End::Natural; 2]),
     };
     Spline::fit(&points.x, &points.y, kind, None)
-        .map(Form::Table)
+        .map(|spline| (Form::Table(spline), said))
         .map_err(|error| of_file(crate::tables::explained(error, &points).to_string()))
 }
 
@@ -272,7 +293,7 @@ impl<T: Scalar> Function<T> for GivenFunction {
     const ORDER: usize = SMOOTH;
 
     fn jet<const K: usize>(&self, x: T) -> [T; K] {
-        match &*self.0 {
+        match &self.0.form {
             Form::Table(spline) => spline.jet(x),
             Form::Law(lift) => {
                 let lanes = T::per_lane(|lane| lift.jet(x.lane(lane)));
@@ -288,7 +309,7 @@ impl<T: Scalar> Function<T> for GivenFunction {
     }
 
     fn breakpoint_after(&self, x: f64) -> Option<f64> {
-        match &*self.0 {
+        match &self.0.form {
             Form::Table(spline) => spline.breakpoint_after(x),
             Form::Law(lift) => {
                 let turns = ((x - lift.origin()) / TAU).floor();
@@ -300,7 +321,7 @@ impl<T: Scalar> Function<T> for GivenFunction {
     }
 
     fn enclosure<const K: usize>(&self, from: f64, to: f64) -> Option<[Interval<f64>; K]> {
-        match &*self.0 {
+        match &self.0.form {
             Form::Table(spline) => spline.enclosure(from, to),
             Form::Law(lift) => {
                 let bounds = lift.enclosure(from, to)?;

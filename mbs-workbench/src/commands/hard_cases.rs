@@ -169,7 +169,9 @@ pub fn study(
         ("text", origin.hash.clone()),
     ]
     .map(|(name, value)| [name.to_string(), value])
-    .to_vec();
+    .into_iter()
+    .chain(super::functions::facts())
+    .collect();
     print(&result, arguments, out)?;
     out.put("result", result.document());
     let files = [("hard-cases.html", result.page()), ("hard-cases.csv", origin.csv(&result.csv()))];

@@ -1,7 +1,7 @@
 //! A lift law on the command line: a word, and options with its dimensions.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser};
 use mbs_codegen::quantity;
@@ -44,6 +44,21 @@ pub struct LawOptions {
     knots: Option<usize>,
 }
 
+/// A law with its origin.
+pub struct GivenLaw {
+    pub lift: Lift,
+    /// Bytes that it was read from.
+    pub source: Vec<u8>,
+    /// File, number of points and of knots of a table; none of a law in words.
+    pub table: Option<String>,
+}
+
+/// A table by the name of its file, without folders, and the number of its points.
+pub fn named_table(path: &str, points: usize) -> String {
+    let name = Path::new(path).file_name().map_or_else(|| path.into(), |name| name.to_string_lossy());
+    format!("table {name}, {points} points")
+}
+
 /// A law with its options in one text.
 #[derive(Parser)]
 #[command(name = "LAW", no_binary_name = true, disable_help_flag = true)]
@@ -57,7 +72,7 @@ struct Written {
 ///
 /// # Errors
 /// [`CommandError`] with the option that is missing or wrong.
-pub fn written(text: &str) -> Result<Lift, CommandError> {
+pub fn written(text: &str) -> Result<GivenLaw, CommandError> {
     written_for(text, false)
 }
 
@@ -85,7 +100,7 @@ pub fn laws() -> String {
 }
 
 /// [`written`], of an angle where `turns`.
-pub fn written_for(text: &str, turns: bool) -> Result<Lift, CommandError> {
+pub fn written_for(text: &str, turns: bool) -> Result<GivenLaw, CommandError> {
     // A B-spline has spaces of its own.
     let words: Vec<&str> = match text.strip_prefix("bspline:") {
         Some(_) => vec![text],
@@ -95,7 +110,7 @@ pub fn written_for(text: &str, turns: bool) -> Result<Lift, CommandError> {
         let text = error.to_string();
         usage(text.lines().next().unwrap_or_default().trim_start_matches("error: "))
     })?;
-    Ok(read.options.law(&read.law, turns)?.0)
+    read.options.law(&read.law, turns)
 }
 
 pub fn in_unit(text: &str, unit: &str, example: &str) -> Result<f64, String> {
@@ -143,11 +158,11 @@ impl LawOptions {
         })
     }
 
-    /// The law that `word` names, with its bytes; `turns`: of an angle.
+    /// The law that `word` names; `turns`: of an angle.
     ///
     /// # Errors
     /// [`CommandError`] with the option that is missing or wrong.
-    pub fn law(&self, word: &str, turns: bool) -> Result<(Lift, Vec<u8>), CommandError> {
+    pub fn law(&self, word: &str, turns: bool) -> Result<GivenLaw, CommandError> {
         let needed = |value: Option<f64>, option: &str| {
             value.ok_or_else(|| usage(format!("the law `{word}` needs `{option}`")))
         };
@@ -181,7 +196,7 @@ impl LawOptions {
                 lift.with_ramps(height.map_err(wrong)?, angle(duration).map_err(wrong)?)?
             }
         };
-        Ok((self.corrected(lift)?, word.as_bytes().to_vec()))
+        Ok(GivenLaw { lift: self.corrected(lift)?, source: word.as_bytes().to_vec(), table: None })
     }
 
     /// The text of a B-spline law, of the command line or in a file.
@@ -207,7 +222,7 @@ impl LawOptions {
     }
 
     /// A lift from a file.
-    fn table(&self, word: &str, turns: bool) -> Result<(Lift, Vec<u8>), CommandError> {
+    fn table(&self, word: &str, turns: bool) -> Result<GivenLaw, CommandError> {
         let path = PathBuf::from(word);
         if path.extension().is_none() {
             let known = FLANKS.iter().map(|(name, _)| *name).chain(["even:2,6,8,10,12"]);
@@ -231,10 +246,12 @@ impl LawOptions {
             );
             return Err(named(format!("{why}\nhelp: name the columns, as `--columns \"deg, mm\"`")));
         }
+        let knots = self.knots.map_or_else(String::new, |knots| format!(", a fit with {knots} knots"));
+        let table = named_table(word, points.x.len()) + &knots;
         let period = core::f64::consts::TAU;
         close_period(&mut points, period).map_err(|fault| named(fault.to_string()))?;
         let spline = Spline::fit(&points.x, &points.y, SplineKind::PeriodicQuintic(period), self.knots);
         let spline = spline.map_err(|error| named(format!("{error}\nhelp: another number of `--knots`")))?;
-        Ok((self.corrected(Lift::table(spline)?)?, bytes))
+        Ok(GivenLaw { lift: self.corrected(Lift::table(spline)?)?, source: bytes, table: Some(table) })
     }
 }

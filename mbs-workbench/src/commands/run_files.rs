@@ -54,6 +54,7 @@ pub fn animated(
 pub fn facts(instances: &[(Preset, Erased)], done: &[RunResult], tables: &Tables) -> Vec<[String; 2]> {
     let first = instances[0].1.equations();
     let mut facts = vec![["coordinates".to_string(), first.coordinates().len().to_string()]];
+    facts.extend(super::functions::facts());
     let declared = mbs_codegen::variables(first.source(), Some(first.scene())).unwrap_or_default();
     let is_of =
         |entry: &str, input: &str| entry.strip_prefix(input).is_some_and(|rest| rest.starts_with('.'));

@@ -54,19 +54,23 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     if let Some(speed) = arguments.speed {
         values.set("speed", speed * core::f64::consts::PI / 30.0).map_err(usage)?;
     }
+    let mut said = None;
     if let Some(law) = &arguments.law {
         if !study.takes_law {
             return Err(CommandError::Usage(format!("the study of `{name}` has no lift law")));
         }
-        values.law = Some(law_options::written(law)?);
+        let given = law_options::written(law)?;
+        said = Some(format!(" Lift law: {}.", given.table.unwrap_or_else(|| law.clone())));
+        values.law = Some(given.lift);
     }
-    let report = (study.run)(&values, &mut |step| {
+    let mut report = (study.run)(&values, &mut |step| {
         // For a reader who waits.
         if std::io::stderr().is_terminal() {
             let _ = writeln!(std::io::stderr(), "{step} ...");
         }
     })
     .map_err(|error| CommandError::Failed(error.to_string()))?;
+    report.sentence.extend(said);
     let origin = Origin::of_text(&card.name(), card.equations().source());
     let directory = arguments
         .out
@@ -106,8 +110,9 @@ fn found<'a>(catalogue: &Catalogue<'a>, name: &str) -> Result<(&'a Card, &'stati
     let of_text = |card: &&Card| card.name().split(':').next() == Some(name) || card.name() == name;
     let own = catalogue.cards.iter().filter(of_text).find_map(|card| Some((card, card.study?)));
     own.ok_or_else(|| {
+        let own = catalogue.cards.iter().filter(|card| card.study.is_some());
         let known: Vec<String> =
-            catalogue.cards.iter().filter(|card| card.study.is_some()).map(Card::name).collect();
+            own.map(|card| card.name().split(':').next().unwrap_or_default().to_string()).collect();
         CommandError::Usage(format!("`{name}` brings no study; there are those of {}", known.join(", ")))
     })
 }

@@ -19,6 +19,13 @@ fn followers() -> [Follower; 4] {
     ]
 }
 
+/// An opening and a closing cam.
+fn rockers() -> [Follower; 2] {
+    let rocker = |side, valve_pad| Follower::rocker(0.03, [0.05, -0.02], 0.04, 0.012, side, valve_pad);
+    [rocker(Side::Left, [-0.01, -0.025]), rocker(Side::Right, [0.005, -0.03])]
+        .map(|one| one.expect("a rocker"))
+}
+
 /// Points at unequal angles with noise, of the contour itself.
 fn measured(cam: &Cam, count: usize, noise: f64, leave: impl Fn(f64) -> bool) -> Vec<[f64; 2]> {
     let mut state = 5_u64;
@@ -59,8 +66,11 @@ fn the_law_is_recovered_from_its_own_profile() {
     const BOUNDS: [(f64, [f64; 2]); 4] =
         [(0.0, [5e-5, 1e-6]), (1e-7, [3e-3, 3e-5]), (1e-6, [0.015, 3e-4]), (4e-6, [0.05, 1e-3])];
     let mut worst = [[0.0_f64; 2]; 4];
-    for (index, follower) in followers().into_iter().enumerate() {
+    for (index, follower) in followers().into_iter().chain(rockers()).enumerate() {
         for (step, (noise, bounds)) in BOUNDS.into_iter().enumerate() {
+            if index >= followers().len() && step != 2 {
+                continue;
+            }
             let direction =
                 if (index + step) % 2 == 0 { Direction::CounterClockwise } else { Direction::Clockwise };
             let cam = cam(mirrored(follower, step % 4 < 2), direction);

@@ -16,16 +16,19 @@ byId("command").textContent = DATA.command;
 const [lift, per] = DATA.by_angle ? [DEGREE, "°"] : [1000, "mm"];
 const UNIT = {
   undercut: [1000, "mm"], "radius of curvature": [1000, "mm"], "grinding wheel": [1000, "mm"], "pressure angle": [DEGREE, "°"],
-  "Hertz pressure": [1e-6, "MPa"], "half face width": [1000, "mm"], "outer radius": [1000, "mm"],
+  "Hertz pressure": [1e-6, "MPa"], "half face width": [1000, "mm"], "outer radius": [1000, "mm"], shaft: [1000, "mm"],
 };
+/* A pair has two cams on one shaft, with names and colours of their own. */
+const CAMS = DATA.cams, isPair = CAMS.length > 1;
+const every = (name) => CAMS.map((cam) => cam[name]);
 const CHARTS = [
-  ["Lift", per, DATA.lift[0], lift], ["Velocity", `${per}/rad`, DATA.lift[1], lift],
-  ["Acceleration", `${per}/rad²`, DATA.lift[2], lift], ["Jerk", `${per}/rad³`, DATA.lift[3], lift],
-  ["Curvature of the contour", "1/mm", DATA.curvature, 1e-3, ["undercut", "radius of curvature", "grinding wheel"]],
-  ["d²r/dϑ² of the polar contour", "mm/rad²", DATA.d2r, 1000],
-  ["Pressure angle", "°", DATA.pressure, DEGREE, ["pressure angle"]], ["Sliding velocity", "mm/rad", DATA.sliding, 1000],
+  ["Lift", per, [DATA.lift[0]], lift], ["Velocity", `${per}/rad`, [DATA.lift[1]], lift],
+  ["Acceleration", `${per}/rad²`, [DATA.lift[2]], lift], ["Jerk", `${per}/rad³`, [DATA.lift[3]], lift],
+  ["Curvature of the contour", "1/mm", every("curvature"), 1e-3, ["undercut", "radius of curvature", "grinding wheel"]],
+  ["d²r/dϑ² of the polar contour", "mm/rad²", every("d2r"), 1000],
+  ["Pressure angle", "°", every("pressure"), DEGREE, ["pressure angle"]], ["Sliding velocity", "mm/rad", every("sliding"), 1000],
 ];
-if (DATA.hertz) CHARTS.push(["Hertz pressure", "MPa", DATA.hertz, 1e-6, ["Hertz pressure"]]);
+if (CAMS[0].hertz) CHARTS.push(["Hertz pressure", "MPa", every("hertz"), 1e-6, ["Hertz pressure"]]);
 const degrees = DATA.theta.map((angle) => angle * DEGREE);
 const cursors = [];
 
@@ -36,20 +39,25 @@ const ticks = (low, high, count) => {
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(Number((k * step).toPrecision(12)));
   return found;
 };
-for (const [name, unit, values, factor, limits = []] of CHARTS) {
+for (const [name, unit, series, factor, limits = []] of CHARTS) {
   const panel = document.createElement("section");
   panel.className = "panel";
   panel.innerHTML = "<h2></h2>";
   panel.firstChild.textContent = `${name} (${unit})`;
+  if (series.length > 1) CAMS.forEach((cam, k) => {
+    const key = document.createElement("span");
+    key.className = `key cam${k}`; key.textContent = cam.name;
+    panel.firstChild.append(key);
+  });
   byId("charts").append(panel);
   const [width, height] = innerWidth < 600 ? [340, 210] : [640, 240];
   const [left, right, top, bottom] = [62, 16, 10, 26];
   const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" }, panel);
   make("title", {}, svg).textContent = `${name} over the cam angle`;
-  const numbers = values.map((value) => value === null ? NaN : value * factor);
+  const numbers = series.map((values) => values.map((value) => value === null ? NaN : value * factor));
   /* A cusp has no finite curvature: the axis leaves out the highest fiftieth. */
-  const sorted = numbers.filter(Number.isFinite).sort((a, b) => a - b);
-  const cut = DATA.verdicts[0].kept ? 0 : limits.includes("undercut") || limits.includes("Hertz pressure") || values === DATA.d2r ? Math.floor(sorted.length / 50) : 0;
+  const sorted = numbers.flat().filter(Number.isFinite).sort((a, b) => a - b);
+  const cut = CAMS.every((cam) => cam.verdicts[0].kept) ? 0 : limits.includes("undercut") || limits.includes("Hertz pressure") || series[0] === CAMS[0].d2r ? Math.floor(sorted.length / 50) : 0;
   let [low, high] = [sorted[cut] ?? 0, sorted[sorted.length - 1 - cut] ?? 1];
   /* A range of rounding is none. */
   if (high - low < 1e-9 * Math.max(Math.abs(high), 1)) [low, high] = [Math.min(low, 0) - 0.5, Math.max(high, 0) + 0.5];
@@ -57,7 +65,8 @@ for (const [name, unit, values, factor, limits = []] of CHARTS) {
   const [from, to] = [degrees[0], degrees[0] + 360];
   const x = (angle) => left + (angle - from) / (to - from) * (width - left - right);
   const y = (value) => height - bottom - (Math.min(Math.max(value, low), high) - low) / (high - low) * (height - top - bottom);
-  for (let angle = Math.ceil(from / 60) * 60; angle <= to; angle += 60) {
+  const apart = width < 500 ? 90 : 60;
+  for (let angle = Math.ceil(from / apart) * apart; angle <= to; angle += apart) {
     make("path", { class: "grid", d: `M${x(angle)} ${top}V${height - bottom}` }, svg);
     make("text", { x: x(angle), y: height - 9, "text-anchor": x(angle) > width - 28 ? "end" : "middle" }, svg).textContent = `${angle}°`;
   }
@@ -65,18 +74,21 @@ for (const [name, unit, values, factor, limits = []] of CHARTS) {
     make("path", { class: value === 0 ? "zero" : "grid", d: `M${left} ${y(value)}H${width - right}` }, svg);
     make("text", { x: left - 6, y: y(value) + 4, "text-anchor": "end" }, svg).textContent = short(value);
   }
-  let path = "", pen = "M";
-  numbers.forEach((value, k) => {
-    if (!Number.isFinite(value)) { pen = "M"; return; }
-    path += `${pen}${x(degrees[k]).toFixed(1)} ${y(value).toFixed(2)}`; pen = "L";
+  numbers.forEach((values, which) => {
+    let path = "", pen = "M";
+    values.forEach((value, k) => {
+      if (!Number.isFinite(value)) { pen = "M"; return; }
+      path += `${pen}${x(degrees[k]).toFixed(1)} ${y(value).toFixed(2)}`; pen = "L";
+    });
+    make("path", { class: `curve cam${which}`, d: path }, svg);
   });
-  make("path", { class: "curve", d: path }, svg);
-  DATA.verdicts.filter((one) => limits.includes(one.name) && !one.kept).forEach((one, row) => {
+  const verdicts = CAMS.flatMap((cam) => cam.verdicts.map((one) => ({ ...one, of: cam.name })));
+  verdicts.filter((one) => limits.includes(one.name) && !one.kept).forEach((one, row) => {
     const at = x(one.angle * DEGREE);
     make("path", { class: "bad", d: `M${at} ${top}V${height - bottom}` }, svg);
     const right = at > width * 0.6;
     const word = make("text", { class: "word", x: at + (right ? -5 : 5), y: top + 12 + 14 * row, "text-anchor": right ? "end" : "start" }, svg);
-    word.textContent = `${one.name} ${(one.angle * DEGREE).toFixed(1)}°`;
+    word.textContent = `${isPair ? `${one.of}: ` : ""}${one.name} ${(one.angle * DEGREE).toFixed(1)}°`;
   });
   const line = make("path", { class: "cursor" }, svg);
   cursors.push((k) => line.setAttribute("d", `M${x(degrees[k])} ${top}V${height - bottom}`));
@@ -88,54 +100,78 @@ const row = (cells, tag, into = table) => {
   cells.forEach((cell) => { const made = document.createElement(tag); made.textContent = cell; line.append(made); });
   return line;
 };
-row(["limit", "bound", "value", "at", ""], "th");
-for (const one of DATA.verdicts) {
-  const [factor, unit] = UNIT[one.name];
-  const bound = `${one.least ? (one.name === "undercut" ? ">" : "≥") : "≤"} ${short(one.bound * factor)}${unit === "°" ? "" : " "}${unit}`;
-  const value = one.value === null ? (one.name === "grinding wheel" ? "convex" : "∞") : `${short(one.value * factor)}${unit === "°" ? "" : " "}${unit}`;
-  const line = row([one.name, bound, value, one.value === null && one.kept ? "" : `${(one.angle * DEGREE).toFixed(1)}°`, one.kept ? "kept" : "broken"], "td");
-  if (!one.kept) line.lastChild.className = "broken";
+for (const cam of CAMS) {
+  row([isPair ? `${cam.name}: limit` : "limit", "bound", "value", "at", ""], "th");
+  for (const one of cam.verdicts) {
+    const [factor, unit] = UNIT[one.name];
+    const bound = `${one.least ? (one.strict ? ">" : "≥") : "≤"} ${short(one.bound * factor)}${unit === "°" ? "" : " "}${unit}`;
+    const value = one.value === null ? (one.name === "grinding wheel" ? "convex" : "∞") : `${short(one.value * factor)}${unit === "°" ? "" : " "}${unit}`;
+    const line = row([one.name, bound, value, one.value === null && one.kept ? "" : `${(one.angle * DEGREE).toFixed(1)}°`, one.kept ? "kept" : "broken"], "td");
+    if (!one.kept) line.lastChild.className = "broken";
+  }
 }
 
 /* The profile to scale, in millimetres, y upwards. */
 const mm = (list) => list.map((value) => value * 1000);
-const [cx, cy] = DATA.contour.map(mm), [fx, fy] = DATA.centre.map(mm);
-const reach = Math.max(...cx.map((x, k) => Math.hypot(x, cy[k])));
-const padRadius = (DATA.pad ?? 0) * 1000, face = (DATA.face ?? 0) * 1000;
-const pivot = DATA.pivot && DATA.pivot.map((value) => value * 1000);
-const spread = (list, more) => [Math.min(-reach, ...list.map((v) => v - more), ...more2), Math.max(reach, ...list.map((v) => v + more), ...more2)];
-let more2 = pivot ? [pivot[0] - 3, pivot[0] + 3] : [];
-const [x0, x1] = spread(fx, Math.max(padRadius, face));
-more2 = pivot ? [pivot[1] - 3, pivot[1] + 3] : [];
-const stem = pivot ? 0 : 0.7 * reach;
-let [y0, y1] = spread(fy, padRadius); y1 += stem;
+const BODIES = CAMS.map((cam) => ({
+  contour: cam.contour.map(mm), centre: cam.centre.map(mm), contact: cam.contact.map(mm), normal: cam.normal,
+  valve: cam.valve && cam.valve.map(mm), pivot: cam.pivot && mm(cam.pivot), opens: cam.opens,
+  pad: (cam.pad ?? 0) * 1000, face: (cam.face ?? 0) * 1000, base: cam.base * 1000,
+}));
+const reach = Math.max(...BODIES.flatMap(({ contour: [x, y] }) => x.map((value, k) => Math.hypot(value, y[k]))));
+const HALF_VALVE = 5, RIM = 1.5;
+const span = (axis) => {
+  const found = [-reach, reach];
+  for (const { centre, pad, face, pivot, valve } of BODIES) {
+    const more = axis === 0 ? Math.max(pad, face) : pad;
+    centre[axis].forEach((value) => found.push(value - more, value + more));
+    if (pivot) found.push(pivot[axis] - 3, pivot[axis] + 3);
+    if (valve) valve[axis].forEach((value) => found.push(value - HALF_VALVE, value + HALF_VALVE));
+  }
+  return [Math.min(...found), Math.max(...found)];
+};
+const [x0, x1] = span(0);
+let [y0, y1] = span(1);
+if (!BODIES[0].pivot) y1 += 0.7 * reach;
 const edge = 0.06 * (x1 - x0);
 const svg = make("svg", { viewBox: `${x0 - edge} ${-y1 - edge} ${x1 - x0 + 2 * edge} ${y1 - y0 + 2 * edge}`, role: "img" }, byId("profile"));
 make("title", {}, svg).textContent = "the cam with its follower";
-const cam = make("g", {}, svg);
-make("path", { class: "cam", d: `M${cx.map((x, k) => `${x.toFixed(4)} ${(-cy[k]).toFixed(4)}`).join("L")}Z` }, cam);
-make("circle", { class: "base", r: DATA.base * 1000 }, cam);
-make("path", { class: "part", d: `M${-reach * 0.06} 0H${reach * 0.06}M0 ${-reach * 0.06}V${reach * 0.06}` }, svg);
-const follower = make("path", { class: "part" }, svg);
-const dot = make("circle", { class: "dot", r: reach * 0.025 }, svg);
 const circle = (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+const turned = make("g", {}, svg);
+BODIES.forEach(({ contour: [cx, cy], base }, k) => {
+  make("path", { class: `cam cam${k}${isPair ? " seen" : ""}`, d: `M${cx.map((x, k) => `${x.toFixed(4)} ${(-cy[k]).toFixed(4)}`).join("L")}Z` }, turned);
+  make("circle", { class: "base", r: base }, turned);
+});
+make("path", { class: "part", d: `M${-reach * 0.06} 0H${reach * 0.06}M0 ${-reach * 0.06}V${reach * 0.06}` }, svg);
+const drawn = BODIES.map((body) => {
+  const { centre: [fx, fy], pivot, pad, face, valve, opens } = body;
+  const follower = make("path", { class: "part" }, svg), dot = make("circle", { class: "dot", r: reach * 0.025 }, svg);
+  return (k) => {
+    const contact = body.contact.map((list) => list[k]), [nx, ny] = body.normal.map((list) => list[k]);
+    let path = "";
+    if (pad) {
+      path += circle(fx[k], -fy[k], pad);
+      path += pivot ? `M${pivot[0]} ${-pivot[1]}L${fx[k]} ${-fy[k]}` : `M${fx[k]} ${-fy[k]}V${-y1}`;
+    } else {
+      /* The face about the foot of the perpendicular from the cam's centre. */
+      const p = contact[0] * nx + contact[1] * ny, foot = [p * nx, p * ny];
+      path += `M${foot[0] + face * ny} ${-(foot[1] - face * nx)}L${foot[0] - face * ny} ${-(foot[1] + face * nx)}`;
+      const away = pivot ? p - pivot[0] * nx - pivot[1] * ny : 0;
+      path += pivot ? `M${pivot[0]} ${-pivot[1]}L${pivot[0] + away * nx} ${-(pivot[1] + away * ny)}L${foot[0]} ${-foot[1]}` : `M0 ${-foot[1]}V${-y1}`;
+    }
+    if (pivot) path += circle(pivot[0], -pivot[1], RIM);
+    if (valve) {
+      /* The pad's rim is drawn small: its radius moves nothing. An opener lies on the valve's end, a closer under it. */
+      const [x, y] = valve.map((list) => list[k]), end = -y + (opens ? RIM : -RIM), middle = valve[0][0];
+      path += `M${pivot[0]} ${-pivot[1]}L${x} ${-y}${circle(x, -y, RIM)}M${middle - HALF_VALVE} ${end}h${2 * HALF_VALVE}`;
+    }
+    follower.setAttribute("d", path);
+    dot.setAttribute("cx", contact[0]); dot.setAttribute("cy", -contact[1]);
+  };
+});
 const show = (k) => {
-  cam.setAttribute("transform", `rotate(${-DATA.sense * degrees[k]})`);
-  const contact = DATA.contact.map((list) => list[k] * 1000), [nx, ny] = DATA.normal.map((list) => list[k]);
-  let path = "";
-  if (padRadius) {
-    path += circle(fx[k], -fy[k], padRadius);
-    path += pivot ? `M${pivot[0]} ${-pivot[1]}L${fx[k]} ${-fy[k]}` : `M${fx[k]} ${-fy[k]}V${-y1}`;
-  } else {
-    /* The face about the foot of the perpendicular from the cam's centre. */
-    const p = contact[0] * nx + contact[1] * ny, foot = [p * nx, p * ny];
-    path += `M${foot[0] + face * ny} ${-(foot[1] - face * nx)}L${foot[0] - face * ny} ${-(foot[1] + face * nx)}`;
-    const away = pivot ? p - pivot[0] * nx - pivot[1] * ny : 0;
-    path += pivot ? `M${pivot[0]} ${-pivot[1]}L${pivot[0] + away * nx} ${-(pivot[1] + away * ny)}L${foot[0]} ${-foot[1]}` : `M0 ${-foot[1]}V${-y1}`;
-  }
-  if (pivot) path += circle(pivot[0], -pivot[1], 1.5);
-  follower.setAttribute("d", path);
-  dot.setAttribute("cx", contact[0]); dot.setAttribute("cy", -contact[1]);
+  turned.setAttribute("transform", `rotate(${-DATA.sense * degrees[k]})`);
+  drawn.forEach((set) => set(k));
   byId("at").textContent = `${degrees[k].toFixed(1)}°`;
   cursors.forEach((set) => set(k));
 };
