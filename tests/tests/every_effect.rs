@@ -24,7 +24,9 @@ macro_rules! written {
 every_effect!(written);
 
 type Load = Polynomial<2>;
-type Whole = LibraryWhole<Harmonic, Load>;
+type All = LibraryWhole<Harmonic, Load>;
+/// Sets the coefficients of one effect.
+type Set = fn(All) -> All;
 
 const PITCH: Harmonic = Harmonic { offset: 0.18, amplitude: 0.005, frequency: 1.0, phase: 0.3 };
 const LOAD: Load = Polynomial { coefficients: [20.0, 5.0] };
@@ -53,8 +55,8 @@ fn apart(one: &[[f64; 10]], other: &[[f64; 10]]) -> f64 {
 #[test]
 fn effects_at_zero_coefficients_move_nothing() {
     let bare: LibraryBare<Harmonic, Load> = Library::new(PITCH, LOAD);
-    let whole: Whole = Library::new(PITCH, LOAD);
-    let zero: Whole = Library {
+    let whole: All = Library::new(PITCH, LOAD);
+    let zero: All = Library {
         tau: 0.0,
         k: 0.0,
         c: 0.0,
@@ -89,7 +91,7 @@ fn effects_at_zero_coefficients_move_nothing() {
     println!("largest change by effects at zero coefficients: {found:.1e}");
     assert!(found < 1e-12, "{found}");
     // Errors do not grow: nothing but the weight acts. And each law that is smooth at this step moves something by itself.
-    let laws: [(&str, fn(Whole) -> Whole); 14] = [
+    let laws: [(&str, Set); 14] = [
         ("constant", |zero| Library { tau: 2.0, ..zero }),
         ("spring", |zero| Library { k: 400.0, ..zero }),
         ("bar", |zero| Library { G: 80e9, ..zero }),
