@@ -369,7 +369,7 @@ where
     R: Real,
 {
     fn start(&self, t: f64) -> Result<[Vec<f64>; 2], Failure> {
-        // Implicit methods know no modes.
+        // Texts with modes start by a method that asks for no slopes.
         let projected = Explicit::new(I::rule(Rule::RungeKutta4), Projection::default());
         let method: AnyMethod<'_, S, R, N, M> = if S::HAS_MODES { &projected } else { &AugmentedLagrangian };
         let run = Simulation::start_from_text(self.mechanism.clone(), method, R::constant(t))?;

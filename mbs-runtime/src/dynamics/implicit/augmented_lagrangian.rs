@@ -2,12 +2,13 @@
 
 use crate::dynamics::formulations::projection::project_position;
 use crate::dynamics::formulations::unstabilized::Unstabilized;
+use crate::dynamics::implicit::held_rows::Along;
 use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Unknowns};
 use crate::dynamics::implicit::springs::Penalized;
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
-use crate::dynamics::model::method::{Method, require_slopes};
+use crate::dynamics::model::method::{Method, require_smooth};
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind};
@@ -63,13 +64,16 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        let next = model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))?;
+        let next = model.moved(from.t, from.t + h, |model| {
+            let next = self.stepped(model, from, h, counts)?;
+            model.settled_in_modes(next, counts)
+        })?;
         model.require_branch_of_implicit_step(from, &next)?;
         Ok(next)
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {
-        require_slopes::<S, R, N, M>()
+        require_smooth::<S, R, N, M>()
     }
 }
 
@@ -99,7 +103,9 @@ impl AugmentedLagrangian {
             model.trapezoid(from, h, &mut y, &rate);
             let position = model.position(t, &y);
             let held = model.held(damping.has_halved(), t, (&y, &lambda), counts);
-            let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &held))?;
+            let forces = model.forces_of_modes(&position, &y, (&qdd, &lambda));
+            let loaded = Model { parameters: forces.as_ref().unwrap_or(model.parameters), ..*model };
+            let penalized = Penalized::of(&loaded, &position, (t, h), (&y, &qdd, &held))?;
             let phi = model.mechanism.phi(model.parameters, &position);
             let mut augmented = lambda;
             for (((augmented, lambda), alpha), phi) in
@@ -113,10 +119,14 @@ impl AugmentedLagrangian {
             let mut bearing = lambda;
             if const { S::FORCE_USES_MULTIPLIERS || !S::STATES.is_empty() } {
                 let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-                bearing = lambda.plus(R::constant(1.0), &[1.0], [&penalized.put(&qdd, &gamma).1]);
+                let put = penalized.put(&qdd, &gamma);
+                let of = (&position, &y);
+                let (_, taken) =
+                    model.held_along(Along::Accelerations, of, put, |force| penalized.answer(force));
+                bearing = lambda.plus(R::constant(1.0), &[1.0], [&taken]);
             }
             rate = model.rates(&position, &y, qdd, &bearing);
-            let (correction, taken) = model.corrected(
+            let (correction, taken) = loaded.corrected(
                 (&position, t),
                 &y,
                 &qdd,
@@ -167,9 +177,14 @@ impl AugmentedLagrangian {
                     return Ok((here, model.residual(t, &moved, &bent, &base.lambda, weight)?));
                 }
                 let place = model.position(t, &moved);
-                let last = Penalized::of(model, &place, (t, h), (&moved, &bent, &base.lambda))?;
-                let imbalance = model.imbalance(&position, &y, &qdd, (&augmented, &bearing));
-                Ok((model.largest(&last.corrected::<S>(&imbalance, &phi, linked).0), least))
+                let forces = model.forces_of_modes(&place, &moved, (&bent, &base.lambda));
+                let pressed = Model { parameters: forces.as_ref().unwrap_or(model.parameters), ..*model };
+                let last = Penalized::of(&pressed, &place, (t, h), (&moved, &bent, &base.lambda))?;
+                let (at, multipliers) = ((&position, t), (&augmented, &bearing));
+                let found = loaded.corrected(at, &y, &qdd, multipliers, &phi, |imbalance, phi| {
+                    last.corrected::<S>(imbalance, phi, linked)
+                })?;
+                Ok((model.largest(&found.0), least))
             })?;
             (Unknowns { motion: change, lambda }, closed) = next;
             if links {
@@ -226,7 +241,7 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &lambda))?;
     let required = mechanism.phi_t(parameters, &position).each(|rate| -rate);
     y.qd = penalized.put(&y.qd, &required).0;
-    require_rates(model, t, (&penalized.phi_q, &required), &y.qd)?;
+    require_rates(model, t, (&penalized.phi_q, &required), (&from.y.qd, &y.qd))?;
     let (qdd, taken) = penalized.put(&qdd, &mechanism.gamma(parameters, &position, &y.qd));
     let lambda = lambda.plus(R::constant(1.0), &[1.0], [&taken]);
     model.require_unshared_by_rank((&position, t), &y, &lambda)?;
@@ -240,15 +255,16 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 /// Part of a velocity that may be left across a row whose velocity is put onto it: a hundred times what the springs leave where it holds.
 const ACROSS: f64 = 1e-2;
 
-/// Fails where a row does not hold the velocity that was put onto it, because it loses all its entries: Φ_q `qd` = `required`, M.
+/// Fails where a row does not hold the velocity that was put onto it, because it loses all its entries: Φ_q `qd` = `required`, M. A step that
+/// ends at rest is judged by the velocity `before` it.
 #[inline]
 fn require_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     (phi_q, required): (&[[R; N]; M], &[R; M]),
-    qd: &[R; N],
+    (before, qd): (&[R; N], &[R; N]),
 ) -> Result<(), Failure> {
-    let allowed = R::constant(ACROSS) * model.largest(qd);
+    let allowed = R::constant(ACROSS) * model.largest(qd).max(model.largest(before));
     for (row, required) in phi_q.iter().zip(required) {
         let open = row.iter().zip(qd).fold(-*required, |sum, (entry, rate)| sum + *entry * *rate);
         let entries = row.iter().zip(&model.metric.coordinates);

@@ -6,7 +6,7 @@ use crate::dynamics::implicit::augmented_lagrangian::AugmentedLagrangian;
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
-use crate::dynamics::model::method::{Method, require_slopes};
+use crate::dynamics::model::method::{Method, require_smooth};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
@@ -59,7 +59,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {
-        require_slopes::<S, R, N, M>()
+        require_smooth::<S, R, N, M>()
     }
 }
 
@@ -127,7 +127,7 @@ fn resolved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     }
     let mut y = end.y.plus(R::constant(SHARE), &[1.0, -1.0], [&end.y, &whole.y]);
     let solved = model.moved(from.t, whole.t, |model| {
-        Projection::default().project(model, whole.t, &mut y, counts)?;
+        model.settle(&Projection::default(), whole.t, &mut y, counts)?;
         Unstabilized.solve(model, whole.t, &y, &end.solved.lambda, counts)
     })?;
     Ok(Ok(Instant { t: whole.t, y, solved, carried: solved.rate.qd }))

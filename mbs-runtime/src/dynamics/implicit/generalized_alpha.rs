@@ -7,7 +7,7 @@ use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
-use crate::dynamics::model::method::{Method, require_slopes};
+use crate::dynamics::model::method::{Method, require_smooth};
 use crate::dynamics::model::metric::require_between;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind};
@@ -73,13 +73,16 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        let next = model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))?;
+        let next = model.moved(from.t, from.t + h, |model| {
+            let next = self.stepped(model, from, h, counts)?;
+            model.settled_in_modes(next, counts)
+        })?;
         model.require_branch_of_implicit_step(from, &next)?;
         Ok(next)
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {
-        require_slopes::<S, R, N, M>()?;
+        require_smooth::<S, R, N, M>()?;
         require_between("spectral radius rho", self.rho, 1.0)
     }
 }
@@ -124,12 +127,14 @@ impl GeneralizedAlpha {
             rate = model.rates(&position, &y, qdd, &lambda);
             let phi = model.mechanism.phi(model.parameters, &position);
             let held = model.held(damping.has_halved(), t, (&y, &lambda), counts);
-            let tangent = Tangent::of(model, &position, &y, &qdd, &held);
+            let forces = model.forces_of_modes(&position, &y, (&qdd, &lambda));
+            let loaded = Model { parameters: forces.as_ref().unwrap_or(model.parameters), ..*model };
+            let tangent = Tangent::of(&loaded, &position, &y, &qdd, &held);
             let matrix = tangent.combined(of_q, gamma / (beta * h), one);
             let phi_q = model.mechanism.phi_q(model.parameters, &position);
             let factors = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
             let (correction, change) =
-                model.corrected((&position, t), &y, &qdd, (&lambda, &lambda), &phi, |imbalance, phi| {
+                loaded.corrected((&position, t), &y, &qdd, (&lambda, &lambda), &phi, |imbalance, phi| {
                     factors.solve(imbalance, phi)
                 })?;
             counts.iterations += 1;
@@ -166,12 +171,22 @@ impl GeneralizedAlpha {
                     return Ok((here, model.residual(t, &before, &base.motion, &base.lambda, of_q)?));
                 }
                 let place = model.position(t, &before);
-                let tangent = Tangent::of(model, &place, &before, &base.motion, &base.lambda);
+                let forces = model.forces_of_modes(&place, &before, (&base.motion, &base.lambda));
+                let pressed = Model { parameters: forces.as_ref().unwrap_or(model.parameters), ..*model };
+                let tangent = Tangent::of(&pressed, &place, &before, &base.motion, &base.lambda);
                 let matrix = tangent.combined(of_q, gamma / (beta * h), one);
                 let phi_q = model.mechanism.phi_q(model.parameters, &place);
                 let last = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
-                let imbalance = model.imbalance(&position, &y, &here.motion, (&here.lambda, &here.lambda));
-                Ok((model.largest(&last.solve(&imbalance, &phi).0), least))
+                let multipliers = (&here.lambda, &here.lambda);
+                let found = loaded.corrected(
+                    (&position, t),
+                    &y,
+                    &here.motion,
+                    multipliers,
+                    &phi,
+                    |imbalance, phi| last.solve(imbalance, phi),
+                )?;
+                Ok((model.largest(&found.0), least))
             })?;
         }
         Err(model.unbalanced(&step, t, MOST_ROUNDS))

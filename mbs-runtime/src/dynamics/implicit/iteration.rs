@@ -1,6 +1,7 @@
 //! Common parts of implicit methods: the tangent of the equations of motion, and the end of their iterations.
 
 use crate::dynamics::formulations::unstabilized::Unstabilized;
+use crate::dynamics::implicit::held_rows::Along;
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::instant::Instant;
@@ -150,7 +151,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     /// A step of Newton's method against itself, of the coordinates (N) and the multipliers (M): `solve` makes it of the rest of
-    /// the balance of forces, as in [`imbalance`](Self::imbalance), and of `phi` (M). Friction has the multipliers that it leads to.
+    /// the balance of forces, as in [`imbalance`](Self::imbalance), and of `phi` (M). Friction has the multipliers that it leads to, and
+    /// rows that hold are met.
     ///
     /// # Errors
     /// [`FailureKind::FrictionLocked`], [`FailureKind::Ambiguous`].
@@ -164,17 +166,21 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         phi: &[R; M],
         solve: impl Fn(&[R; N], &[R; M]) -> ([R; N], [R; M]),
     ) -> Result<([R; N], [R; M]), Failure> {
-        if !S::FORCE_USES_MULTIPLIERS {
-            return Ok(solve(&self.imbalance(position, y, qdd, (lambda, bearing)), phi));
-        }
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let solve = |force: &[R; N], phi: &[R; M], along: Along| {
+            let of = (position, y);
+            self.held_along(along, of, solve(force, phi), |force| solve(force, &[zero; M]))
+        };
+        if !S::FORCE_USES_MULTIPLIERS {
+            return Ok(solve(&self.imbalance(position, y, qdd, (lambda, bearing)), phi, Along::Places));
+        }
         let (mechanism, parameters) = (self.mechanism, self.parameters);
         let inertia = mechanism.mass_times(parameters, position, qdd);
         let held = inertia.plus(one, &[1.0], [&mechanism.reaction(parameters, position, lambda)]);
-        let found = self.balanced(position, (t, y), bearing, |force, whole| {
+        let found = self.balanced_freely(forces::STANDING.of(), position, (t, y), bearing, |force, whole| {
             let (step, change) = match whole {
-                true => solve(&held.plus(-one, &[1.0], [force]), phi),
-                false => solve(&force.each(|force| -force), &[zero; M]),
+                true => solve(&held.plus(-one, &[1.0], [force]), phi, Along::Places),
+                false => solve(&force.each(|force| -force), &[zero; M], Along::Nothing),
             };
             let before = if whole { *bearing } else { [zero; M] };
             (step, before.plus(-one, &[1.0], [&change]))
@@ -201,11 +207,13 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     ) -> Result<R, Failure> {
         let (mechanism, parameters) = (self.mechanism, self.parameters);
         let position = self.position(t, y);
+        let forces = self.forces_of_modes(&position, y, (qdd, lambda));
+        let model = Model { parameters: forces.as_ref().unwrap_or(parameters), ..*self };
         let mass = mechanism.mass(parameters, &position).map(|row| row.each(|entry| weight * entry));
         let (phi, phi_q) = (mechanism.phi(parameters, &position), mechanism.phi_q(parameters, &position));
         let factors = System::new(&mass, &phi_q, self.metric).factorize(S::COORDINATES, t)?;
         let solve = |force: &[R; N], phi: &[R; M]| factors.solve(force, phi);
-        let found = self.corrected((&position, t), y, qdd, (lambda, lambda), &phi, solve)?;
+        let found = model.corrected((&position, t), y, qdd, (lambda, lambda), &phi, solve)?;
         Ok(self.largest(&found.0))
     }
 

@@ -6,7 +6,7 @@ use crate::dynamics::linear_systems::tangent::{Tangent, add_outer};
 use crate::dynamics::model::Model;
 use crate::dynamics::model::metric::Metric;
 use crate::failure::Failure;
-use crate::linear_algebra::vectors::Each;
+use crate::linear_algebra::vectors::{Each, dot};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::forces;
@@ -169,5 +169,15 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
             *multiplier = self.quarter * *multiplier * open;
         }
         (put, multipliers)
+    }
+
+    /// The part of rates by a force (N), and of the multipliers of [`put`](Self::put): N and M.
+    pub(super) fn answer(&self, force: &[R; N]) -> ([R; N], [R; M]) {
+        let x = self.factors.solve(force, &[]).0;
+        let mut multipliers = self.alpha;
+        for (multiplier, row) in multipliers.iter_mut().zip(&self.phi_q) {
+            *multiplier = self.quarter * *multiplier * dot(row, &x);
+        }
+        (x, multipliers)
     }
 }

@@ -17,16 +17,6 @@ pub(crate) fn require_smooth<S: Dynamic<R, N, M>, R: Real, const N: usize, const
     S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
 }
 
-/// [`require_smooth`] of a method or analysis that knows no modes.
-///
-/// # Errors
-/// [`FailureKind::NotSmooth`], [`FailureKind::SetValuedForce`], [`FailureKind::EventOfMotion`].
-pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
--> Result<(), Failure> {
-    require_no_stiction::<S, R, N, M>()?;
-    require_smooth::<S, R, N, M>()
-}
-
 /// Fails where a text has friction with stiction or events: outside a motion that knows whether it sticks or slides, and what has begun.
 ///
 /// # Errors
@@ -40,7 +30,7 @@ pub(crate) fn require_no_stiction<S: Dynamic<R, N, M>, R: Real, const N: usize, 
     }
 }
 
-/// [`require_slopes`] of a position of rest: ∂Q/∂q̇ has no part in it.
+/// [`require_smooth_at_rest`] of an analysis that knows no modes.
 ///
 /// # Errors
 /// [`FailureKind::NotSmooth`], [`FailureKind::SetValuedForce`], [`FailureKind::EventOfMotion`].

@@ -273,6 +273,11 @@ where
             if E::IS_ANY
                 && let (Some(monitor), Some((_, event))) = (&mut monitor, &mut event)
             {
+                if const { S::HAS_MODES } {
+                    let [before, after] =
+                        [&last.y.y, &accepted.start.y.y].map(|y| event.at(start, &y.q, &y.qd));
+                    monitor.jump(before, after);
+                }
                 let found = monitor.first((start, end), |t| {
                     let y = course.at(t).y;
                     event.at(t, &y.q, &y.qd)

@@ -48,7 +48,7 @@ where
     /// As [`step_to`](Self::step_to), but stops where `event` of time, coordinates and velocities first reaches zero, even if it
     /// turns back there. Returns `true` if it did. The step that ends there is shortened, so that the state is one of the method.
     /// The event is searched on the cubic through the ends of each step. A value of 0 at the start has been passed already, and
-    /// the next call goes on after the event.
+    /// the next call goes on after the event. An impact may take a function of velocities over zero: that does not count.
     ///
     /// # Errors
     /// As [`step`](Self::step); [`FailureKind::NonFinite`] where `event` is NaN or infinite; [`FailureKind::InvalidMethodParameter`] where the event bound asks for too many parts. The state is then that before the step that failed.
@@ -74,7 +74,11 @@ where
             let (length, most) = (end - self.now.t, self.most_parts());
             for part in 1..=most {
                 self.require_parts(part)?;
+                let before = if const { S::HAS_MODES } { self.value(&mut event) } else { R::constant(0.0) };
                 self.decide_modes()?;
+                if const { S::HAS_MODES } {
+                    monitor.jump(before, self.value(&mut event));
+                }
                 let rest = end - self.now.t;
                 let to_kink = part < most || S::HAS_MODES;
                 let whole = match to_kink {
@@ -90,8 +94,7 @@ where
                 self.check_ahead(&last)?;
                 self.go(&last);
                 if let Some((_, scale)) = found.filter(|_| is_event) {
-                    let value = event(self.now.t, &self.now.y.q, &self.now.y.qd);
-                    self.stopped = Some(Stopped::new(self.now.t, value, scale));
+                    self.stopped = Some(Stopped::new(self.now.t, self.value(&mut event), scale));
                     return Ok(true);
                 }
                 if end <= self.now.t {
@@ -100,6 +103,11 @@ where
             }
         }
         Ok(false)
+    }
+
+    /// An event function at the present instant.
+    fn value(&self, event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R) -> R {
+        event(self.now.t, &self.now.y.q, &self.now.y.qd)
     }
 
     /// Fails where the resolution of events would divide a step of `h` (s) into more parts than are looked at.

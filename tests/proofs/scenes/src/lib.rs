@@ -2,9 +2,50 @@
 //!
 //! The text of the machine is written once; `alone` compiles it as it is. The other features add two scenes and an effect of
 //! another machine at its slider, whose parameters are longer than those of the slider-crank.
+//!
+//! The same of bodies under forces: alone, in a scene of none of the effects of `every_effect/text.rs`, and in the scene of all of them.
 #![no_std]
 
-use mbs_runtime::{Evaluation, Kinematic, Margin, Mechanism, Newton, Outcome};
+use mbs_runtime::{Dynamic, Energy, Evaluation, Kinematic, Margin, Mechanism, Newton, Outcome};
+
+include!("../../../tests/every_effect/text.rs");
+
+macro_rules! bodies {
+    ([$($common:tt)*] $first:ident { $($text_of_first:tt)* } $($name:ident { $($text:tt)* })*) => {
+        #[cfg(feature = "alone")]
+        mbs_runtime::mechanism! {
+            /// Bodies under their weight.
+            pub mechanism Library;
+            $($common)*
+        }
+        #[cfg(not(feature = "alone"))]
+        mbs_runtime::mechanism! {
+            /// Bodies under their weight, and every effect.
+            pub mechanism Library;
+            $($common)*
+            effect $first { $($text_of_first)* }
+            $(effect $name { $($text)* })*
+            effect none {}
+            scene Whole = $first $(+ $name)*;
+            scene Bare = none;
+        }
+    };
+}
+every_effect!(bodies);
+
+#[cfg(feature = "alone")]
+type Bodies = Library;
+#[cfg(feature = "without")]
+type Bodies = LibraryBare<(), ()>;
+#[cfg(feature = "with")]
+type Bodies = LibraryWhole<mbs_runtime::driver::Harmonic, mbs_runtime::driver::Polynomial<2>>;
+
+/// Coordinates of the bodies.
+const B: usize = 5;
+
+type Given = <Bodies as Mechanism<f64, B, 0>>::Parameters;
+type Placed = <Bodies as Mechanism<f64, B, 0>>::Position;
+type States = <Bodies as Dynamic<f64, B, 0>>::States;
 
 macro_rules! slider_crank {
     ($($effects:tt)*) => {
@@ -114,4 +155,26 @@ export! {
     fn scene_solve_linear(m: &Chosen, f: &Factors, b: &[f64; N]) -> [f64; N] { m.solve_linear(f, b) }
     fn scene_get(m: &Chosen, index: usize) -> Option<f64> { m.get(index) }
     fn scene_set(m: &mut Chosen, index: usize, value: f64) -> bool { m.set(index, value) }
+    fn scene_bodies_parameters(m: &Bodies) -> Given { m.parameters() }
+    fn scene_bodies_position(m: &Bodies, p: &Given, q: &[f64; B], t: f64) -> Placed { m.position(p, q, t) }
+    fn scene_bodies_mass(m: &Bodies, p: &Given, s: &Placed) -> [[f64; B]; B] { m.mass(p, s) }
+    fn scene_bodies_mass_times(m: &Bodies, p: &Given, s: &Placed, x: &[f64; B]) -> [f64; B] { m.mass_times(p, s, x) }
+    fn scene_bodies_force(m: &Bodies, p: &Given, s: &Placed, qd: &[f64; B], z: &States) -> [f64; B] {
+        m.force(p, s, qd, z, &[])
+    }
+    fn scene_bodies_force_q(m: &Bodies, p: &Given, s: &Placed, qd: &[f64; B], z: &States) -> [[f64; B]; B] {
+        m.force_q(p, s, qd, z, &[])
+    }
+    fn scene_bodies_force_qd(m: &Bodies, p: &Given, s: &Placed, qd: &[f64; B], z: &States) -> [[f64; B]; B] {
+        m.force_qd(p, s, qd, z, &[])
+    }
+    fn scene_bodies_energy(m: &Bodies, p: &Given, s: &Placed, qd: &[f64; B]) -> Energy<f64> { m.energy(p, s, qd) }
+    fn scene_bodies_powers(
+        m: &Bodies, p: &Given, s: &Placed, qd: &[f64; B], z: &States
+    ) -> <Bodies as Dynamic<f64, B, 0>>::Powers {
+        m.powers(p, s, qd, z, &[])
+    }
+    fn scene_bodies_state_rates(m: &Bodies, p: &Given, s: &Placed, qd: &[f64; B], z: &States) -> States {
+        m.state_rates(p, s, qd, z, &[])
+    }
 }

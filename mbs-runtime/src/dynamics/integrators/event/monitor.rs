@@ -64,6 +64,16 @@ impl<R: Real> Monitor<R> {
         Monitor { direction, scrutiny, side, none: R::constant(AWAY) * value.abs() }
     }
 
+    /// Goes on where the function jumps between two steps from the value `before` to `after`, as a velocity does at an impact. A jump over
+    /// zero does not count.
+    pub fn jump(&mut self, before: R, after: R) {
+        let zero = R::constant(0.0);
+        if before != after && before * after <= zero {
+            self.side = (after != zero).then(|| after.sign());
+            self.none = zero;
+        }
+    }
+
     /// The first time (s) between two times at which `function` reaches zero so that it counts, with its largest absolute value
     /// until then. `None` if it does not; the next call goes on from there.
     ///
