@@ -1,10 +1,9 @@
 //! Effect of rounding on a motion: where a start moved by rounding leads elsewhere, a run in that precision shows nothing.
 
+use crate::hard_cases::instants::Instants;
 use crate::hard_cases::references::{FIRST, Run, Varied, deviations};
 use crate::hard_cases::variation::Random;
 use crate::setting::Resolution;
-
-use super::instants::Instants;
 
 /// Distance of the moved starts in ε.
 const ROUNDING: f64 = 4.0;
