@@ -15,6 +15,7 @@ use super::document::Output;
 use super::hard_cases::{Arguments, FEW, VARIANTS, WHOLE, command, print, verdict};
 use super::report_files::{require_writable, write_report};
 use crate::forge::{Blueprint, Study};
+use crate::hard_cases::course::Course;
 use crate::hard_cases::list::{Case, Listed, cases};
 use crate::hard_cases::matrix::svg;
 use crate::hard_cases::result::{MatrixResult, in_order};
@@ -234,7 +235,7 @@ fn not_moved(methods: &[MotionMethod], reason: String) -> Found {
         is_expected: false,
         not_made: Vec::new(),
         work: 0,
-        course: Vec::new(),
+        course: Course::default(),
     };
     Found { outcomes: methods.iter().map(refused).collect(), left_out: Vec::new(), not_run: 0 }
 }

@@ -2,6 +2,7 @@
 
 use crate::erased::driven_variations::{DrivenVariants, LANES};
 use crate::erased::timed_steps::{Placed, TimedSteps};
+use crate::hard_cases::course::Course;
 use crate::hard_cases::judge::{Bounds, exceeds, judge, less_turns, of_driven};
 use crate::hard_cases::list::description::MethodKind;
 use crate::hard_cases::oracle::{Oracle, OracleState};
@@ -153,7 +154,9 @@ fn outcome(
     };
     outcome.work = work;
     let scales = &subject.scales;
-    outcome.course = run.iter().step_by(3).filter_map(|placed| placed.motion[0].last().copied()).collect();
+    outcome.course = Course::of_place(
+        run.iter().step_by(3).filter_map(|placed| placed.motion[0].last().copied()).collect(),
+    );
     let is_closed = closing == Closing::Closed;
     let largest = run.iter().flat_map(|placed| placed.motion[0].iter().zip(scales));
     let largest = largest.map(|(q, scale)| (q / scale).abs()).fold(1.0, f64::max);
@@ -166,8 +169,7 @@ fn outcome(
     .map(|bound| bound * largest);
     outcome.bound = Some(bound);
     let digit = numbers.epsilon() * largest;
-    let bounds =
-        Bounds { rows: open, balance: open, estimate: bound, rounding: bound, digit, is_shown: true };
+    let bounds = Bounds { rows: open, balance: open, estimate: bound, rounding: bound, digit };
     let states: Vec<OracleState> = run.iter().map(of_driven).collect();
     let judgement = judge([&states, &[]], oracle, scales, bounds, variation.seed);
     outcome.not_made = judgement.not_made;

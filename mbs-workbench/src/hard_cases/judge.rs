@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use crate::erased::timed_runs::Seen;
 use crate::erased::timed_steps::Placed;
+use crate::hard_cases::instants::stretches;
 use crate::hard_cases::oracle::{Gap, Oracle, OracleState, Slack};
 use crate::hard_cases::variation::Random;
 use crate::hard_cases::verdict::larger;
@@ -27,8 +28,6 @@ pub struct Bounds {
     pub rounding: f64,
     /// Rounding of one position, as a part of its size in the reference metric, and of one velocity, as a part of itself.
     pub digit: f64,
-    /// `true` where the instants show the motion between them, so that rates can be integrated.
-    pub is_shown: bool,
 }
 
 /// Result of a judgement.
@@ -80,7 +79,7 @@ pub fn of_driven(placed: &Placed<f64>) -> OracleState {
     OracleState { t: placed.t, q, qd, qdd, ..OracleState::default() }
 }
 
-/// Judges a run at equal distances of time, by the text as `oracle` reads it. `fine`: the run of half the step at the same
+/// Judges a run at instants in stretches of equal distances, by the text as `oracle` reads it. `fine`: the run of half the step at the same
 /// instants, empty where there is none; `scales`: reference metric of the coordinates.
 pub fn judge(
     [run, fine]: [&[OracleState]; 2],
@@ -98,18 +97,10 @@ pub fn judge(
         }
     }
     rows(run, oracle, scales, bounds, &mut found);
-    if bounds.is_shown {
-        velocities([run, fine], (oracle.turns(), oracle.has_impacts()), scales, bounds, &mut found);
-    } else {
-        found
-            .not_made
-            .push("velocities and energy: the case says that its instants are too far apart".to_string());
-    }
+    velocities([run, fine], (oracle.turns(), oracle.has_impacts()), scales, bounds, &mut found);
     if oracle.is_dynamic() && run.iter().any(|state| !state.lambda.is_empty() || oracle.row_count() == 0) {
         balance(run, oracle, scales, bounds, (seed, &mut found));
-        if bounds.is_shown {
-            energy([run, fine], oracle, bounds, &mut found);
-        }
+        energy([run, fine], oracle, bounds, &mut found);
     }
     if let Some(words) = oracle.contradiction() {
         found.fault(words);
@@ -170,6 +161,15 @@ pub fn less_turns(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
+/// Indices from which on `count` instants follow each other at equal distances, each beginning where the last one ends.
+fn begins(run: &[OracleState], count: usize) -> Vec<usize> {
+    let times: Vec<f64> = run.iter().map(|state| state.t).collect();
+    let each = |range: core::ops::Range<usize>| {
+        (range.start..(range.end + 1).saturating_sub(count)).step_by(count - 1)
+    };
+    stretches(&times).into_iter().flat_map(each).collect()
+}
+
 /// q changes by the integral of q̇: Hermite's rule of order 6 through q̇ and q̈ of both ends, once over one interval and once over
 /// two; what truncation explains falls 32 times between them. Errors of q̇ and q̈ are those that half the step shows: beside stiff
 /// springs small errors of q are large ones of q̈.
@@ -198,11 +198,10 @@ fn velocities(
         };
         extent(&(0..a.q.len()).map(miss).collect::<Vec<_>>(), scales)
     };
-    let mut over: Vec<(f64, f64)> = run
-        .windows(3)
-        .enumerate()
-        .step_by(2)
-        .filter_map(|(index, three)| {
+    let mut over: Vec<(f64, f64)> = begins(run, 3)
+        .into_iter()
+        .filter_map(|index| {
+            let three = &run[index..index + 3];
             let twice = miss(&three[0], &three[2]);
             let one = miss(&three[0], &three[1]).max(miss(&three[1], &three[2]));
             let own = bounds.estimate + doubt(index).max(doubt(index + 1));
@@ -320,11 +319,10 @@ fn energy([run, fine]: [&[OracleState]; 2], oracle: &Oracle, bounds: Bounds, fou
     let simpson = |a: &(f64, [f64; 2]), b: &(f64, [f64; 2]), c: &(f64, [f64; 2])| {
         (c.0 - a.0) / 6.0 * (a.1[1] + 4.0 * b.1[1] + c.1[1])
     };
-    let mut over: Vec<(f64, f64)> = all
-        .windows(5)
-        .enumerate()
-        .step_by(4)
-        .map(|(from, five)| {
+    let mut over: Vec<(f64, f64)> = begins(run, 5)
+        .into_iter()
+        .map(|from| {
+            let five = &all[from..from + 5];
             let [a, b, c, d, e] = five else { return (0.0, 0.0) };
             let work = simpson(a, b, c) + simpson(c, d, e);
             let mut explained = 2.0 * (simpson(a, c, e) - work).abs() + 2.0 * (e.0 - a.0) * doubt(from);

@@ -2,14 +2,17 @@
 
 use crate::erased::timed_runs::{Effort, Seen};
 use crate::erased::variations::{Change, MovedVariants};
+use crate::hard_cases::course::Course;
+use crate::hard_cases::instants::{Instants, PARTS};
 use crate::hard_cases::judge::{Bounds, exceeds, judge, of_moved};
 use crate::hard_cases::list::description::MethodKind;
 use crate::hard_cases::oracle::Oracle;
-use crate::hard_cases::references::{FIRST, PARTS, References, Run, Varied, apart, instants, references};
+use crate::hard_cases::references::{FIRST, References, Run, Varied, apart, references};
+use crate::hard_cases::sensitivity::Sensitivity;
 use crate::hard_cases::similar::{compared, in_other_size, in_size, positions};
 use crate::hard_cases::study::{Clock, Extent};
 use crate::hard_cases::variation::{Class, Variation, VariedParts};
-use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 use crate::setting::{FormulationName, MotionMethod, Numbers, Resolution};
 
 /// Tolerance of adaptive runs in `f64` and `f32`.
@@ -35,7 +38,8 @@ const DIGITS: f64 = 4.0;
 
 /// Largest way of a coordinate from its start, at most 1 in the reference metric.
 fn motion(run: &[Seen], scales: &[f64]) -> f64 {
-    apart(run, &vec![run[0].clone(); run.len()], scales).clamp(1e-12, 1.0)
+    let ways = run.iter().flat_map(|seen| seen.q.iter().zip(&run[0].q).zip(scales));
+    ways.map(|((a, b), scale)| ((a - b) / scale).abs()).fold(0.0, larger).clamp(1e-12, 1.0)
 }
 
 fn finer(resolution: Resolution, factor: f64) -> Resolution {
@@ -99,9 +103,15 @@ pub fn moved_outcomes(
     if extent.is_refused() {
         return Ok(refused_outcomes(&varied, subject, extent));
     }
-    let of = |varied: &Varied<'_>| references(varied, extent.until, scales);
+    let times = extent.instants(Resolution::Tolerance(1.0));
+    let of = |varied: &Varied<'_>| references(varied, &times, scales);
     progress("references", 0.0);
-    let usual = of(&plain)?;
+    let mut usual = of(&plain)?;
+    if extent.seeds.iter().any(|seed| Variation::of(*seed, subject).class == Class::Single) {
+        // Beside a start that has no neighbours a run in single precision is judged to its end.
+        let epsilon = Numbers::Single.epsilon();
+        usual.sensitivity = Sensitivity::of(&plain, &usual.first, &times, (epsilon, scales)).ok();
+    }
     let methods: Vec<MotionMethod> = extent
         .methods
         .iter()
@@ -194,7 +204,7 @@ fn base(
     if method.is_adaptive() {
         return Ok(TOLERANCES.map(Resolution::Tolerance));
     }
-    let times = instants(until, Resolution::Steps(PARTS));
+    let times = Instants::of(until, Resolution::Steps(PARTS), PARTS);
     let mut steps = PARTS;
     let mut last: Option<Run> = None;
     let mut reason = String::new();
@@ -241,25 +251,22 @@ fn outcome(
     };
     let is_single = varied.numbers == Numbers::Single;
     let resolution = finer(base[usize::from(is_single)], variation.finer);
-    let times = instants(extent.until, resolution);
-    // Steps that are no multiple of the instants have instants of their own.
-    let is_shared = times.len() == references.first.len();
+    let times = extent.instants(resolution);
     let (run, effort) = match varied.run(method, resolution, &times) {
         Ok(ran) => ran,
         Err(reason) => return Outcome { reason, ..outcome },
     };
     outcome.work = effort.evaluations + effort.corrections;
-    outcome.course = course(&run, scales);
+    outcome.course = Course::of_run(&run, scales);
     let fine = match varied.run(method, finer(resolution, 2.0), &times) {
         Ok((fine, _)) => fine,
         Err(reason) => return Outcome { reason: format!("at half the step: {reason}"), ..outcome },
     };
-    let estimate = match eighth_of_the_step(varied, method, (resolution, &times)) {
-        Some(Ok(finest)) => apart(&run, &fine, scales).max(apart(&fine, &finest, scales)),
-        Some(Err(reason)) => {
+    let finest = match eighth_of_the_step(varied, method, (resolution, &times)).transpose() {
+        Ok(finest) => finest,
+        Err(reason) => {
             return Outcome { reason: format!("at an eighth of the step: {reason}"), ..outcome };
         }
-        None => apart(&run, &fine, scales),
     };
     let moved = references.first.first().map_or(0.0, |first| {
         let shifts = first.q.iter().zip(scales).map(|(q, scale)| (q / scale).abs());
@@ -269,6 +276,28 @@ fn outcome(
     let epsilon = varied.numbers.epsilon();
     // Rounding adds up over the steps, and acts on distances from the origin of the frame.
     let rounding = 1e3 * epsilon * moved * (effort.steps.max(1) as f64).sqrt();
+    // Where rounding of the start leads elsewhere, a run in single precision shows nothing.
+    let whole = &run;
+    let end = references.sensitivity.as_ref().filter(|_| is_single).and_then(|found| found.end(rounding));
+    let [run, fine, finest] = [&run[..], &fine[..], finest.as_deref().unwrap_or_default()].map(|run| {
+        let count = end.map_or(run.len(), |end| run.partition_point(|seen| seen.t < end));
+        &run[..count]
+    });
+    if let Some(end) = end {
+        let words =
+            format!("; judged before t = {end:.4} s: rounding of the start leads elsewhere from there on");
+        outcome.variant += &words;
+        if run.len() < 2 {
+            return Outcome {
+                reason: "rounding of the start leads elsewhere: no digits are claimed".to_string(),
+                ..outcome
+            };
+        }
+    }
+    let estimate = match finest.is_empty() {
+        true => apart(run, fine, scales),
+        false => apart(run, fine, scales).max(apart(fine, finest, scales)),
+    };
     let width =
         references.estimate + references.other.as_ref().map_or(0.0, |(apart, own, _)| apart.min(*own));
     let bound = TRUSTED * estimate + 10.0 * width + rounding;
@@ -280,13 +309,12 @@ fn outcome(
         estimate,
         rounding: 10.0 * rounding,
         digit: DIGITS * epsilon * moved,
-        is_shown: extent.description.as_ref().is_none_or(|case| !case.unresolved),
     };
     if drifts(method) {
         bounds.rows += 100.0 * estimate + 1e-6;
         bounds.balance = bounds.balance.max(1e-5);
     }
-    let [states, fine_states] = [&run, &fine].map(|run| run.iter().map(of_moved).collect::<Vec<_>>());
+    let [states, fine_states] = [run, fine].map(|run| run.iter().map(of_moved).collect::<Vec<_>>());
     let judgement = if is_soft {
         Default::default()
     } else {
@@ -301,12 +329,8 @@ fn outcome(
     if references.other.is_none() {
         outcome.not_made.push(format!("two formulations: {}", references.alone));
     }
-    outcome.error = Some(if is_shared {
-        apart(&run, &references.first, scales)
-    } else {
-        at_end(&run, &references.first, scales)
-    });
-    let error = outcome.error.unwrap_or(f64::NAN);
+    let error = apart(run, &references.first, scales);
+    outcome.error = Some(error);
     let disagree = references.other.as_ref().filter(|(apart, own, _)| {
         *apart > TRUSTED * (references.estimate + own) + 10.0 * rounding && method == FIRST
     });
@@ -330,7 +354,11 @@ fn outcome(
     };
     let outcome = Outcome { verdict, reason, ..outcome };
     match &extent.description {
-        Some(case) => case.judged(outcome, MethodKind::of(method), variation, (&states, &varied.oracle)),
+        Some(case) => {
+            // Bounds of known values hold for the whole run.
+            let states: Vec<_> = whole.iter().map(of_moved).collect();
+            case.judged(outcome, MethodKind::of(method), variation, (&states, &varied.oracle))
+        }
         None => outcome,
     }
 }
@@ -340,7 +368,7 @@ fn outcome(
 fn eighth_of_the_step(
     varied: &Varied<'_>,
     method: MotionMethod,
-    (resolution, times): (Resolution, &[f64]),
+    (resolution, times): (Resolution, &Instants),
 ) -> Option<Result<Run, String>> {
     (varied.oracle.has_contacts() && !method.is_adaptive())
         .then(|| varied.run(method, finer(resolution, 8.0), times).map(|(run, _)| run))
@@ -358,7 +386,7 @@ fn similar_outcome(
         Ok(base) => base,
         Err(reason) => return Outcome { reason: reason.clone(), ..refused },
     };
-    let times = instants(extent.until, base[0]);
+    let times = extent.instants(base[0]);
     let runs = [other, own].map(|varied| varied.run(method, base[0], &times));
     match runs {
         [Err(reason), _] => Outcome { reason, ..refused },
@@ -390,7 +418,7 @@ fn refused_outcomes(
                     true => Resolution::Tolerance(TOLERANCES[usize::from(varied.numbers == Numbers::Single)]),
                     false => Resolution::Steps(8 * PARTS),
                 };
-                let times = instants(extent.until, resolution);
+                let times = extent.instants(resolution);
                 let is_suited = varied.mechanism.admits(*method, varied.numbers);
                 is_suited.then(|| varied.ran(*method, finer(resolution, variation.finer), &times).map(|_| ()))
             });
@@ -407,24 +435,4 @@ fn refused_outcomes(
         }
     }
     outcomes
-}
-
-/// Distance at the end alone.
-fn at_end(a: &[Seen], b: &[Seen], scales: &[f64]) -> f64 {
-    match (a.last(), b.last()) {
-        (Some(a), Some(b)) => apart(core::slice::from_ref(a), core::slice::from_ref(b), scales),
-        _ => f64::NAN,
-    }
-}
-
-/// The coordinate that moves most, at some instants.
-fn course(run: &[Seen], scales: &[f64]) -> Vec<f64> {
-    let width = |j: usize| {
-        let all = run.iter().map(|seen| seen.q[j] / scales[j]);
-        all.clone().fold(f64::NEG_INFINITY, f64::max) - all.fold(f64::INFINITY, f64::min)
-    };
-    let Some(widest) = (0..scales.len()).max_by(|a, b| width(*a).total_cmp(&width(*b))) else {
-        return Vec::new();
-    };
-    run.iter().step_by(2).map(|seen| seen.q[widest]).collect()
 }

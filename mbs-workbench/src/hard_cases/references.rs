@@ -4,12 +4,11 @@ use mbs_runtime::Failure;
 
 use crate::erased::timed_runs::{Effort, Seen};
 use crate::erased::variations::{Change, MovedVariants};
+use crate::hard_cases::instants::{Instants, PARTS};
 use crate::hard_cases::oracle::Oracle;
+use crate::hard_cases::sensitivity::Sensitivity;
 use crate::hard_cases::verdict::larger;
 use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod, Numbers, Resolution};
-
-/// Intervals between the instants of a run.
-pub const PARTS: u32 = 64;
 
 /// The formulation and integrator that others are compared with.
 pub const FIRST: MotionMethod =
@@ -35,6 +34,8 @@ pub struct References {
     pub other: Option<(f64, f64, String)>,
     /// Reason where there is no other.
     pub alone: String,
+    /// Effect of rounding in single precision, where that is run.
+    pub sensitivity: Option<Sensitivity>,
 }
 
 /// A mechanism with the values of a variant.
@@ -57,9 +58,9 @@ impl Varied<'_> {
         &self,
         method: MotionMethod,
         resolution: Resolution,
-        times: &[f64],
+        instants: &Instants,
     ) -> Result<(Run, Effort), String> {
-        self.ran(method, resolution, times).map_err(|failure| failure.to_string())
+        self.ran(method, resolution, instants).map_err(|failure| failure.to_string())
     }
 
     /// A run, or its failure.
@@ -67,41 +68,68 @@ impl Varied<'_> {
         &self,
         method: MotionMethod,
         resolution: Resolution,
-        times: &[f64],
+        instants: &Instants,
     ) -> Result<(Run, Effort), Failure> {
-        let mut seen = Vec::new();
-        let see = &mut |state| seen.push(state);
-        let ran = match &self.start {
-            Some(start) => self.mechanism.run_changed(&self.change, start, method, resolution, times, see),
-            None => self.mechanism.run(self.numbers, method, resolution, times, see),
-        };
-        ran.map(|effort| (seen, effort))
+        if let Some(start) = &self.start {
+            return self.from(start, method, resolution, instants);
+        }
+        shown(instants, &mut |see| self.mechanism.run(self.numbers, method, resolution, &instants.times, see))
+    }
+
+    /// A run in `f64` from a start (coordinates and velocities), or its failure.
+    pub fn from(
+        &self,
+        start: &[Vec<f64>; 2],
+        method: MotionMethod,
+        resolution: Resolution,
+        instants: &Instants,
+    ) -> Result<(Run, Effort), Failure> {
+        let Varied { mechanism, change, .. } = self;
+        shown(instants, &mut |see| {
+            mechanism.run_changed(change, start, method, resolution, &instants.times, see)
+        })
     }
 }
 
-/// Largest difference of two runs at the instants that both have, in the reference metric.
-pub fn apart(a: &[Seen], b: &[Seen], scales: &[f64]) -> f64 {
-    let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
-    let stride = (many.len().saturating_sub(1) / few.len().saturating_sub(1).max(1)).max(1);
-    let pairs = few.iter().zip(many.iter().step_by(stride));
-    let pairs = pairs.flat_map(|(a, b)| a.q.iter().zip(&b.q).zip(scales));
-    pairs.map(|((a, b), scale)| ((a - b) / scale).abs()).fold(0.0, larger)
+/// Takes a function with which a run shows its instants.
+type Shows<'a> = &'a mut dyn FnMut(&mut dyn FnMut(Seen)) -> Result<Effort, Failure>;
+
+/// The instants of a run that are shown.
+fn shown(instants: &Instants, run: Shows) -> Result<(Run, Effort), Failure> {
+    let mut seen = Vec::new();
+    let effort = run(&mut |state| {
+        if instants.shows(state.t) {
+            seen.push(state);
+        }
+    })?;
+    Ok((seen, effort))
 }
 
-/// Whole steps between instants: a factor changes the number of instants, not the steps between them.
-pub fn instants(until: f64, resolution: Resolution) -> Vec<f64> {
-    let parts = match resolution {
-        Resolution::Steps(steps) => (steps / (steps / PARTS).max(1)).max(1),
-        Resolution::Tolerance(_) => PARTS,
-    };
-    (0..=parts).map(|k| until * f64::from(k) / f64::from(parts)).collect()
+/// Times (s) that two runs share, and their distance there in the reference metric.
+pub fn deviations(a: &[Seen], b: &[Seen], scales: &[f64]) -> Vec<(f64, f64)> {
+    let near = |t: f64| 1e-6 * (t.abs() + a.last().map_or(0.0, |last| last.t.abs()));
+    let mut others = b.iter().peekable();
+    let mut found = Vec::new();
+    for own in a {
+        while others.next_if(|other| other.t < own.t - near(own.t)).is_some() {}
+        if let Some(other) = others.peek().filter(|other| (other.t - own.t).abs() <= near(own.t)) {
+            let parts = own.q.iter().zip(&other.q).zip(scales);
+            let parts = parts.map(|((a, b), scale)| ((a - b) / scale).abs());
+            found.push((own.t, parts.fold(0.0, larger)));
+        }
+    }
+    found
+}
+
+/// Largest difference of two runs at the instants that both have, in the reference metric; NaN where they share none.
+pub fn apart(a: &[Seen], b: &[Seen], scales: &[f64]) -> f64 {
+    deviations(a, b, scales).into_iter().map(|(_, distance)| distance).reduce(larger).unwrap_or(f64::NAN)
 }
 
 /// References of a mechanism.
-pub fn references(varied: &Varied<'_>, until: f64, scales: &[f64]) -> Result<References, String> {
-    let times = instants(until, Resolution::Tolerance(1.0));
-    let (first, _) = varied.run(FIRST, Resolution::Tolerance(1e-11), &times)?;
-    let (coarse, _) = varied.run(FIRST, Resolution::Tolerance(1e-9), &times)?;
+pub fn references(varied: &Varied<'_>, times: &Instants, scales: &[f64]) -> Result<References, String> {
+    let (first, _) = varied.run(FIRST, Resolution::Tolerance(1e-11), times)?;
+    let (coarse, _) = varied.run(FIRST, Resolution::Tolerance(1e-9), times)?;
     let estimate = apart(&first, &coarse, scales);
     let mut alone = "no formulation of another kind suits it".to_string();
     for method in SECOND {
@@ -111,22 +139,22 @@ pub fn references(varied: &Varied<'_>, until: f64, scales: &[f64]) -> Result<Ref
         if !is_partitioned || !varied.mechanism.admits(method, Numbers::Double) {
             continue;
         }
-        match second(varied, method, &times, scales) {
+        match second(varied, method, times, scales) {
             Ok((run, own)) => {
                 let other = Some((apart(&first, &run, scales), own, method.to_string()));
-                return Ok(References { first, estimate, other, alone: String::new() });
+                return Ok(References { first, estimate, other, alone: String::new(), sensitivity: None });
             }
             Err(reason) => alone = format!("{method}: {reason}"),
         }
     }
-    Ok(References { first, estimate, other: None, alone })
+    Ok(References { first, estimate, other: None, alone, sensitivity: None })
 }
 
 /// A run by another formulation, with its own estimate.
 fn second(
     varied: &Varied<'_>,
     method: MotionMethod,
-    times: &[f64],
+    times: &Instants,
     scales: &[f64],
 ) -> Result<(Run, f64), String> {
     if method.is_adaptive() {

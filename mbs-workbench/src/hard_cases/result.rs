@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
+use crate::hard_cases::course::Course;
 use crate::hard_cases::study::Study;
 use crate::hard_cases::variation::Class;
 use crate::hard_cases::verdict::{Cell, Outcome, Place, Verdict, cells};
@@ -53,7 +54,7 @@ struct OutcomeData<'a> {
     is_expected: bool,
     not_made: &'a [String],
     work: u64,
-    course: &'a [f64],
+    course: &'a Course,
     /// Row and column.
     place: [&'a str; 2],
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::erased::facade::AnyEquations;
 use crate::erased::variations::{MovedVariants, Variable};
 use crate::hard_cases::driven::driven_outcomes;
+use crate::hard_cases::instants::{Instants, PARTS};
 use crate::hard_cases::list::description::{Description, MethodKind};
 use crate::hard_cases::list::sampled::Encoder;
 use crate::hard_cases::moved::moved_outcomes;
@@ -13,7 +14,7 @@ use crate::hard_cases::oracle::{Gap, Jet, Oracle};
 use crate::hard_cases::similarity::{Dimension, Similarity};
 use crate::hard_cases::variation::{Class, VariedParts};
 use crate::hard_cases::verdict::Outcome;
-use crate::setting::MotionMethod;
+use crate::setting::{MotionMethod, Resolution};
 
 /// Extent of a study.
 #[derive(Clone, Debug)]
@@ -34,6 +35,12 @@ impl Extent {
     /// `true` where a kind of method is run.
     pub fn has(&self, kind: MethodKind) -> bool {
         self.description.as_ref().is_none_or(|case| case.refused.is_some() || case.bounds.contains_key(&kind))
+    }
+
+    /// Instants of a run.
+    pub fn instants(&self, resolution: Resolution) -> Instants {
+        let own = self.description.as_ref().and_then(|case| case.instants);
+        Instants::of(self.until, resolution, own.unwrap_or(PARTS))
     }
 
     /// `true` where a method runs a variant, both by their indices.

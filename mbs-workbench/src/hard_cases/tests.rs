@@ -275,14 +275,7 @@ fn there_is_an_end_to_the_time() {
 fn half_the_step_excuses_a_noise_of_accelerations_and_no_wrong_velocity() {
     let oracle = Oracle::read("mechanism Cart; coord x: m = 0; drive push: x == sin(t/1s);", None, &|_| None)
         .expect("a text");
-    let bounds = Bounds {
-        rows: f64::INFINITY,
-        balance: 1.0,
-        estimate: 1e-12,
-        rounding: 1e-12,
-        digit: 0.0,
-        is_shown: true,
-    };
+    let bounds = Bounds { rows: f64::INFINITY, balance: 1.0, estimate: 1e-12, rounding: 1e-12, digit: 0.0 };
     let run = |factor: f64, noise: f64| -> Vec<OracleState> {
         let at = |index: u32| {
             let t = f64::from(index) / 64.0;
@@ -304,4 +297,23 @@ fn half_the_step_excuses_a_noise_of_accelerations_and_no_wrong_velocity() {
     assert!(wrong(&noisy, &[]).is_some(), "nothing says that it is noise");
     assert_eq!(wrong(&noisy, &right), None);
     assert!(wrong(&fast, &fast).is_some(), "half the step has the same wrong velocity");
+}
+
+#[test]
+fn velocities_between_the_instants_of_a_cluster_are_judged() {
+    let oracle = Oracle::read("mechanism Cart; coord x: m = 0; drive push: x == sin(t/1s);", None, &|_| None)
+        .expect("a text");
+    let bounds = Bounds { rows: f64::INFINITY, balance: 1.0, estimate: 1e-12, rounding: 1e-9, digit: 0.0 };
+    let run = |factor: f64| -> Vec<OracleState> {
+        let at = |index: u32| {
+            // Five instants at distances of 0.1 s in each 40 s: six turns in between.
+            let t = 40.0 * f64::from(index / 5) + 0.1 * f64::from(index % 5);
+            let [q, qd, qdd] = [t.sin(), factor * t.cos(), -t.sin()].map(|value| vec![value]);
+            OracleState { t, q, qd, qdd, ..OracleState::default() }
+        };
+        (0..40).map(at).collect()
+    };
+    let found = |factor: f64| judge([&run(factor), &[]], &oracle, &[1.0], bounds, 1);
+    assert_eq!(found(1.0), Default::default());
+    assert!(found(1.001).wrong.is_some_and(|words| words.contains("integral of q̇")));
 }

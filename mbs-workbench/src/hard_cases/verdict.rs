@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::hard_cases::course::Course;
 use crate::hard_cases::variation::{Class, Variation};
 
 /// Verdict on a run.
@@ -56,8 +57,8 @@ pub struct Outcome {
     pub not_made: Vec<String>,
     /// Evaluations and corrections of the run.
     pub work: u64,
-    /// Course of the first coordinate that moves, for a picture.
-    pub course: Vec<f64>,
+    /// Its courses, for pictures.
+    pub course: Course,
 }
 
 impl Outcome {
@@ -76,7 +77,7 @@ impl Outcome {
             is_expected: false,
             not_made: Vec::new(),
             work: 0,
-            course: Vec::new(),
+            course: Course::default(),
         }
     }
 }
@@ -178,7 +179,7 @@ mod tests {
             is_expected: false,
             not_made: Vec::new(),
             work,
-            course: Vec::new(),
+            course: Course::default(),
         }
     }
 

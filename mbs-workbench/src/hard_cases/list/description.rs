@@ -26,15 +26,17 @@ pub struct Description {
     /// `true` for a case that takes minutes.
     #[serde(default)]
     pub long: bool,
-    /// `true` where contacts or vibrations lie between the instants of a run: rates are not integrated there.
-    #[serde(default)]
-    pub unresolved: bool,
+    /// Intervals between the instants of a run, 64 without it; of more than 640 the first four of each 64th part are looked at.
+    pub instants: Option<u32>,
     /// Largest error of each kind of method, as a part of the size of what is compared. Methods of other kinds are not run.
     #[serde(default)]
     pub bounds: BTreeMap<MethodKind, f64>,
     /// Values that are known.
     #[serde(default)]
     pub known: Vec<Known>,
+    /// Tables of values that are known at some instants.
+    #[serde(default)]
+    pub tables: Vec<Table>,
     /// Samples of an encoder that move the mechanism in place of the time.
     pub samples: Option<Samples>,
     /// The refusal that is right, where there is no answer.
@@ -80,6 +82,9 @@ pub struct Known {
     /// Instants at which it is that.
     #[serde(default)]
     pub when: When,
+    /// Time (s) at which it is that, where that is an instant of the run.
+    #[serde(skip)]
+    pub at: Option<f64>,
     /// Size that its error is a part of.
     #[serde(default = "one")]
     pub size: f64,
@@ -92,6 +97,58 @@ pub struct Known {
     /// Kinds of variants that have another one: `parameters`, `guess`.
     #[serde(default)]
     pub except: Vec<String>,
+}
+
+/// Values that are known at some instants, in a file beside the description: a line a time, `t` (s) and outputs or coordinates.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// Name of the file.
+    pub file: String,
+    /// Size that errors are a part of.
+    #[serde(default = "one")]
+    pub size: f64,
+    /// Source of the numbers.
+    pub source: String,
+    /// Its values.
+    #[serde(skip)]
+    pub known: Vec<Known>,
+}
+
+impl Table {
+    /// Takes the values of `text`, numbers with commas between them below a line of names.
+    ///
+    /// # Errors
+    /// The line that is no row of the table.
+    pub fn fill(&mut self, text: &str) -> Result<(), String> {
+        let mut lines = text.lines().zip(1..);
+        let names: Vec<&str> = lines.next().map(|(line, _)| line.split(',').collect()).unwrap_or_default();
+        for (line, number) in lines {
+            let values: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
+            let values = values.map_err(|error| format!("{}:{number}: {error}", self.file))?;
+            let (Some(at), true) = (values.first(), values.len() == names.len()) else {
+                return Err(format!(
+                    "{}:{number}: {} values for {} names",
+                    self.file,
+                    values.len(),
+                    names.len()
+                ));
+            };
+            let rows = names.iter().zip(&values).skip(1);
+            self.known.extend(rows.map(|(name, value)| Known {
+                value: name.to_string(),
+                is: *value,
+                when: When::Always,
+                at: Some(*at),
+                size: self.size,
+                rate: None,
+                turning: None,
+                source: self.source.clone(),
+                except: Vec::new(),
+            }));
+        }
+        Ok(())
+    }
 }
 
 fn one() -> f64 {

@@ -52,11 +52,12 @@ pub fn cases() -> Result<Vec<Case>, String> {
             let read = |path: &Path| fs::read_to_string(path).map_err(|error| unreadable(path, error));
             let beside = path.with_extension("toml");
             let description = Description::read(&read(&beside)?);
-            Ok(Case {
-                name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
-                text: read(&path)?,
-                description: description.map_err(|fault| format!("{}: {fault}", beside.display()))?,
-            })
+            let mut description = description.map_err(|fault| format!("{}: {fault}", beside.display()))?;
+            for table in &mut description.tables {
+                table.fill(&read(&path.with_file_name(&table.file))?)?;
+            }
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            Ok(Case { name, text: read(&path)?, description })
         })
         .collect()
 }

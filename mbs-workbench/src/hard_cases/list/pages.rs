@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use super::description::{Description, MethodKind, When};
+use super::description::{Description, MethodKind, Table, When};
 use super::{Case, cases, folder};
 
 fn kind(kind: MethodKind) -> &'static str {
@@ -42,7 +42,7 @@ fn filled(text: &str) -> String {
 }
 
 fn page(case: &Case) -> String {
-    let Description { title, origin, why, elsewhere, here, bounds, known, refused, outside, .. } =
+    let Description { title, origin, why, elsewhere, here, bounds, known, tables, refused, outside, .. } =
         &case.description;
     let mut page = format!("# {title}\n\n`{}`; from {origin}.\n\n", case.name);
     for (head, text) in
@@ -58,7 +58,7 @@ fn page(case: &Case) -> String {
         );
         page += &format!("{}\n\n", filled(&text));
     }
-    if !known.is_empty() {
+    if !known.is_empty() || !tables.is_empty() {
         page += "| known value | it is | source |\n|---|---|---|\n";
         for known in known {
             let when = if known.when == When::End { " at the end" } else { "" };
@@ -66,6 +66,14 @@ fn page(case: &Case) -> String {
             // Writing to a string succeeds.
             let _ =
                 writeln!(page, "| `{}` | {is}{when} | {} |", known.value, known.source.replace('|', "\\|"));
+        }
+        for Table { file, source, known, .. } in tables {
+            let _ = writeln!(
+                page,
+                "| {} values | those of `{file}` | {} |",
+                known.len(),
+                source.replace('|', "\\|")
+            );
         }
         page += "\n| bound of the error over its size | |\n|---|---|\n";
         for (of, bound) in bounds {

@@ -3,6 +3,7 @@
 use core::f64::consts::TAU;
 
 use crate::erased::driven_variations::DrivenVariants;
+use crate::hard_cases::course::Course;
 use crate::hard_cases::judge::{exceeds, of_driven};
 use crate::hard_cases::list::description::{Description, MethodKind, Samples};
 use crate::hard_cases::list::stored::Miss;
@@ -91,7 +92,15 @@ impl Encoder<'_> {
             (Ok(()), None, None) => (Verdict::Right, String::new()),
         };
         let (error, bound) = (Some(worst), Some(bound));
-        Outcome { verdict, reason, error, bound, work: samples.len() as u64, course, ..outcome }
+        Outcome {
+            verdict,
+            reason,
+            error,
+            bound,
+            work: samples.len() as u64,
+            course: Course::of_place(course),
+            ..outcome
+        }
     }
 
     /// Largest open row, and largest miss of a known value.

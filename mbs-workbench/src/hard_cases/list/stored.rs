@@ -74,18 +74,23 @@ impl Description {
         // From a shaken guess forces move the mechanism from another start.
         let is_elsewhere = class == Class::Guess && oracle.is_dynamic();
         let holds = |known: &&Known| {
-            !(known.except.iter().any(|name| name == class.name()) || is_elsewhere && known.when == When::End)
+            let is_of_instant = known.when == When::End || known.at.is_some();
+            !(known.except.iter().any(|name| name == class.name()) || is_elsewhere && is_of_instant)
         };
         if class == Class::Similar {
             return Ok(None);
         }
-        for known in self.known.iter().filter(holds) {
+        let tables = self.tables.iter().flat_map(|table| &table.known);
+        for known in self.known.iter().chain(tables).filter(holds) {
             let first = match (known.value.as_str(), states.first()) {
                 (ENERGY, Some(first)) => oracle.energy(first)?[0],
                 _ => 0.0,
             };
             let skipped = if known.when == When::End { states.len().saturating_sub(1) } else { 0 };
-            for state in states.iter().skip(skipped) {
+            let last = states.last().map_or(0.0, |last| last.t);
+            let is_then =
+                |state: &&OracleState| known.at.is_none_or(|at| (state.t - at).abs() <= 1e-6 * last);
+            for state in states.iter().skip(skipped).filter(is_then) {
                 let all = match known.value.as_str() {
                     ENERGY => {
                         vec![Quantity { value: oracle.energy(state)?[0] - first, ..Quantity::default() }]

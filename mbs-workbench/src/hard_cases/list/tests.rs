@@ -1,4 +1,5 @@
 use super::*;
+use crate::hard_cases::course::Course;
 use crate::hard_cases::list::description::MethodKind;
 use crate::hard_cases::oracle::{Oracle, OracleState};
 use crate::hard_cases::similarity::Similarity;
@@ -29,7 +30,7 @@ fn outcome(verdict: Verdict, reason: &str) -> Outcome {
         is_expected: false,
         not_made: Vec::new(),
         work: 1,
-        course: Vec::new(),
+        course: Course::default(),
     }
 }
 
@@ -67,8 +68,9 @@ fn every_case_has_a_text_of_its_name_with_bounds_and_known_values() {
         let words: Vec<&str> = case.text.split(|letter: char| !letter.is_alphanumeric()).collect();
         let is_named = words.windows(2).any(|pair| pair[0] == "mechanism" && pair[1] == case.type_name());
         assert!(is_named, "{} declares no {}", case.name, case.type_name());
-        let Description { bounds, known, refused, why, elsewhere, here, .. } = &case.description;
-        let is_judged = !bounds.is_empty() && !known.is_empty();
+        let Description { bounds, known, tables, refused, why, elsewhere, here, .. } = &case.description;
+        let is_known = !known.is_empty() || !tables.is_empty();
+        let is_judged = !bounds.is_empty() && is_known;
         assert!(
             is_judged != refused.is_some(),
             "{} has either bounds and known values, or a refusal",
@@ -78,7 +80,7 @@ fn every_case_has_a_text_of_its_name_with_bounds_and_known_values() {
         for part in [why, elsewhere, here] {
             assert!(part.len() > 20 && part.split_whitespace().count() < 40, "{}: {part}", case.name);
         }
-        for known in known {
+        for known in known.iter().chain(tables.iter().flat_map(|table| &table.known)) {
             let is_there =
                 known.value == "energy" || words.contains(&known.value.split('.').next().unwrap_or_default());
             assert!(is_there, "{}: {}", case.name, known.value);
@@ -106,6 +108,23 @@ fn a_run_beside_a_known_value_is_wrong() {
     let energy = description("[[known]]\nvalue = 'energy'\nsource = 'no damper'");
     assert_eq!(judged(&energy, 0.0, 1.0).verdict, Verdict::Right);
     assert_eq!(judged(&energy, 1e-5, 1.0).verdict, Verdict::Wrong);
+}
+
+#[test]
+fn a_table_is_known_at_its_times_alone() {
+    let tabled = |rows: &str| {
+        let mut case = description("[[tables]]\nfile = 'a.csv'\nsize = 2.0\nsource = 'cos t'");
+        case.tables[0].fill(&format!("t,x\n{rows}")).map(|()| case)
+    };
+    let right = tabled("0.5,0.8775825618903728\n0.55,7.0\n1.9,-0.3232895668635034").expect("a table");
+    assert_eq!(judged(&right, 0.0, 1.0).verdict, Verdict::Right);
+    assert_eq!(judged(&right, 3e-6, 1.0).verdict, Verdict::Wrong);
+    let wrong = tabled("0.5,0.87759").expect("a table");
+    let found = judged(&wrong, 0.0, 1.0);
+    assert_eq!(found.verdict, Verdict::Wrong);
+    assert!(found.reason.contains("at t = 0.5000 s"), "{}", found.reason);
+    assert!(tabled("0.5,a").is_err_and(|fault| fault.starts_with("a.csv:2: ")));
+    assert!(tabled("0.5,1.0\n0.6").is_err_and(|fault| fault == "a.csv:3: 1 values for 2 names"));
 }
 
 #[test]

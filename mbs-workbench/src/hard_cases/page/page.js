@@ -22,10 +22,11 @@ function words(cell) {
 
 const again = (outcome) => `${DATA.replay.replace("CASE", outcome.case)}${outcome.seed}`;
 
-function sparkline(course) {
+function sparkline(course, name) {
+  const figure = element("figure");
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   const seen = course.filter((value) => value !== null);
-  if (seen.length < 2) return svg;
+  if (seen.length < 2) return figure;
   const [low, high] = [Math.min(...seen), Math.max(...seen)];
   const y = (value) => (high > low ? 31 - (28 * (value - low)) / (high - low) : 17);
   const points = seen.map((value, index) => `${((150 * index) / (seen.length - 1)).toFixed(1)},${y(value).toFixed(1)}`);
@@ -33,7 +34,9 @@ function sparkline(course) {
   svg.setAttribute("viewBox", "0 0 150 34");
   path.setAttribute("d", `M${points.join("L")}`);
   svg.append(path);
-  return svg;
+  figure.append(svg);
+  if (name) figure.append(element("figcaption", `${name} ${short(low)} to ${short(high)}`));
+  return figure;
 }
 
 function open(cell, button) {
@@ -59,7 +62,10 @@ function open(cell, button) {
     if (outcome.reason) why.append(element("br"), element("b", outcome.reason));
     row.append(why);
     const picture = element("td");
-    picture.append(sparkline(outcome.course));
+    const { place, energy = [], violation = [] } = outcome.course;
+    picture.append(sparkline(place));
+    if (energy.length) picture.append(sparkline(energy, "energy (J)"));
+    if (violation.length) picture.append(sparkline(violation, "violation"));
     row.append(picture);
     const replay = element("td");
     replay.append(element("code", again(outcome)));
