@@ -26,12 +26,16 @@ macro_rules! export {
 
 export! {
     proof_four_bar_f64: FourBar::<f64>::default(), "L5";
-    proof_four_bar_f32: FourBar::<f32>::default(), "L5";
     proof_platform_f64: Platform::<f64>::default(), "rod[1]";
-    proof_platform_f32: Platform::<f32>::default(), "rod[1]";
     proof_parallelogram_f64: Parallelogram::<f64>::default(), "h";
-    proof_parallelogram_f32: Parallelogram::<f32>::default(), "h";
     proof_cam_f64: cam::<f64>(), "base";
+}
+
+#[cfg(feature = "single")]
+export! {
+    proof_four_bar_f32: FourBar::<f32>::default(), "L5";
+    proof_platform_f32: Platform::<f32>::default(), "rod[1]";
+    proof_parallelogram_f32: Parallelogram::<f32>::default(), "h";
     proof_cam_f32: cam::<f32>(), "base";
 }
 
@@ -59,8 +63,14 @@ export_lanes! {
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_batch() -> bool {
     exercise_batch(FourBar::default(), &Start::of(&FourBar::<f64>::default())).is_ok()
-        & exercise_batch(FourBar::default(), &Start::of(&FourBar::<f32>::default())).is_ok()
         & exercise_batch(Parallelogram::default(), &Start::of(&Parallelogram::<f64>::default())).is_ok()
+}
+
+/// The same in single precision.
+#[cfg(feature = "single")]
+#[unsafe(no_mangle)]
+pub extern "C" fn proof_batch_f32() -> bool {
+    exercise_batch(FourBar::default(), &Start::of(&FourBar::<f32>::default())).is_ok()
 }
 
 macro_rules! export_dynamics {
@@ -81,6 +91,10 @@ macro_rules! export_dynamics {
 
 export_dynamics! {
     proof_engine_f64: f64;
+}
+
+#[cfg(feature = "single")]
+export_dynamics! {
     proof_engine_f32: f32;
 }
 
@@ -97,7 +111,13 @@ pub extern "C" fn proof_engine_lanes() {
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_hammer() -> bool {
     exercise_contacts(black_box(Hammer::<f64>::default())).is_ok()
-        & exercise_contacts(black_box(Hammer::<f32>::default())).is_ok()
+}
+
+/// The same in single precision.
+#[cfg(feature = "single")]
+#[unsafe(no_mangle)]
+pub extern "C" fn proof_hammer_f32() -> bool {
+    exercise_contacts(black_box(Hammer::<f32>::default())).is_ok()
 }
 
 /// Impacts, frictions that stick and events, in `f64`; `panic_free` has `f32` and all methods. False where a solver fails.
@@ -120,6 +140,18 @@ pub extern "C" fn proof_tape() -> bool {
         & (exercise_tape::<Lanes<f64, 4>>().0 == [3.0; 4])
 }
 
+/// All of it in single precision.
+#[cfg(feature = "single")]
+fn single() -> bool {
+    proof_four_bar_f32()
+        & proof_platform_f32()
+        & proof_parallelogram_f32()
+        & proof_cam_f32()
+        & proof_batch_f32()
+        & proof_engine_f32()
+        & proof_hammer_f32()
+}
+
 /// Entry point, from which the linker collects the needed code.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_entry() -> bool {
@@ -128,17 +160,16 @@ pub extern "C" fn proof_entry() -> bool {
     proof_parallelogram_lanes();
     proof_cam_lanes();
     proof_engine_lanes();
+    #[cfg(feature = "single")]
+    if !single() {
+        return false;
+    }
     proof_four_bar_f64()
-        & proof_four_bar_f32()
         & proof_platform_f64()
-        & proof_platform_f32()
         & proof_parallelogram_f64()
-        & proof_parallelogram_f32()
         & proof_cam_f64()
-        & proof_cam_f32()
         & proof_batch()
         & proof_engine_f64()
-        & proof_engine_f32()
         & proof_hammer()
         & proof_sledge()
         & proof_drivers()
