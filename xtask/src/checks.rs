@@ -7,7 +7,7 @@ use crate::{browser, costs, documents, fuzz, growth, instructions, lines, plante
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 10] = [
+const LONG: [(&str, &str); 11] = [
     ("mbs-codegen", ""),
     ("mbs-motions", ""),
     ("mbs-cases", "events"),
@@ -15,6 +15,7 @@ const LONG: [(&str, &str); 10] = [
     ("mbs-cases", "impacts"),
     ("mbs-cases", "laws"),
     ("mechanisms", "effects"),
+    ("mechanisms", "lecture"),
     ("mbs-tests", "assembly"),
     ("mbs-tests", "proofs"),
     ("mbs-faults", "nothing_follows"),

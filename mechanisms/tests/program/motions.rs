@@ -169,3 +169,19 @@ fn the_values_are_those_of_the_library_bit_by_bit() {
         }
     }
 }
+
+#[test]
+fn a_decay_that_bounds_the_steps_of_an_explicit_method_is_told_with_its_cure() {
+    let told = |options: &[&str]| {
+        let scratch = Scratch::new(&format!("stiff{}", options.concat().replace(' ', "")));
+        let run = ["run", "quarter_car", "--until", "0.4", "--steps", "16"];
+        let text = standard_output(run_into(&scratch, &[&run, options].concat()));
+        text.lines().find(|line| line.trim_start().starts_with("stiff")).map(str::to_string)
+    };
+    // The damper takes the difference of both velocities away in 1/(c/40 kg + c/300 kg).
+    let damper = ["--param", "c=1e5"];
+    let line = told(&damper).expect("a stiff motion");
+    assert!(line.contains("decays in 0.00035 s") && line.contains("`--method radau`"), "{line}");
+    assert_eq!(told(&[]), None);
+    assert_eq!(told(&[&damper[..], &["--method", "radau"]].concat()), None);
+}

@@ -36,9 +36,43 @@ pub(super) fn direct(
         let length = span / f64::from(equal(span, longest));
         figures.push(["size of the equal steps".to_string(), format!("{} s", significant(length, 4))]);
     }
+    figures.extend(stiff(dynamics, approach, &found));
     figures.extend(energies(&found.motion));
     figures.extend(loads(&found.motion));
     Ok(AnalysisResult { ended: end, ..AnalysisResult::of(found.motion, figures) })
+}
+
+/// Steps for each instant shown from which on their length is chosen by the method.
+const MANY_STEPS: u64 = 4;
+
+/// Step over the time constant of a decay from which on that bounds it. Explicit pairs are stable up to 3.3 (order 5) and 6.1 (order 8);
+/// where they have to follow a decay to three digits and more, steps stay below 2.
+const STIFF: f64 = 2.0;
+
+/// Coordinates up to which small motions cost less than a run: eigenvalues take the third power of their number.
+const MOST_COORDINATES: usize = 60;
+
+/// A decay of small motions about the end that bounds the mean step of an explicit method, and its cure.
+fn stiff(dynamics: &dyn AnyDynamics, approach: &Approach, found: &Simulated) -> Option<[String; 2]> {
+    let is_explicit = !matches!(approach.stabilization, Stabilization::Radau | Stabilization::Implicit(_));
+    let (Steps::Adaptive { .. }, true, None) = (&approach.steps, is_explicit, found.failure) else {
+        return None;
+    };
+    let times = &found.motion.time;
+    let is_large = found.motion.coordinates.len() > MOST_COORDINATES;
+    if is_large || found.counts.steps < MANY_STEPS * times.len() as u64 {
+        return None;
+    }
+    let step = (times.last()? - times.first()?) / found.counts.steps as f64;
+    let eigenvalues = dynamics.small_motions(&found.motion).ok()?.eigenvalues;
+    let decay = eigenvalues.iter().map(|[real, _]| -real).fold(0.0, f64::max);
+    let words = || {
+        let (time, step) = (significant(1.0 / decay, 2), significant(step, 2));
+        format!(
+            "a motion decays in {time} s, which bounds the steps of an explicit method to {step} s: `--method radau` takes longer ones"
+        )
+    };
+    (STIFF < decay * step).then(|| ["stiff".to_string(), words()])
 }
 
 /// Numbers of instants of a motion at which its estimated errors are taken, the end included: the first that divides its own.
