@@ -14,7 +14,7 @@ use crate::card::Card;
 use crate::catalogue::Catalogue;
 use crate::commands::document::Output;
 use crate::commands::run::Arguments as Analysis;
-use crate::commands::{self, CommandError};
+use crate::commands::{self, CommandError, STACK};
 use crate::effects::measurement::{NamedScene, Order, measure};
 use crate::erased::costs::Comparable;
 use crate::erased::variations::Variable;
@@ -185,10 +185,6 @@ impl Command {
         (needs_code && is_file(name) && !is_started()).then_some(name)
     }
 }
-
-/// Stack of the program (bytes). Dense matrices are on it, for 82 coordinates with their multipliers half a megabyte each,
-/// and a build without optimisation keeps every copy.
-const STACK: usize = 64 << 20;
 
 /// Runs the command line on mechanisms, as `program(&[card!(Wiper::default())])`.
 ///

@@ -38,6 +38,7 @@ pub mod mismatch;
 pub mod motion;
 #[cfg(feature = "program")]
 pub mod output;
+pub mod random;
 #[cfg(feature = "program")]
 pub mod setting;
 #[cfg(feature = "program")]

@@ -5,7 +5,7 @@ use std::thread;
 
 use mbs_workbench::card::{Card, Preset};
 use mbs_workbench::erased::experiment::{SAME, difference};
-use mbs_workbench::verify::states::Generator;
+use mbs_workbench::random::Generator;
 use mechanisms::CATALOGUE;
 
 /// Guesses of each mechanism.

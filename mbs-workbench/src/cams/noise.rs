@@ -10,6 +10,7 @@ use core::f64::consts::TAU;
 use mbs_runtime::driver::{End, FitError};
 
 use super::lift::Lift;
+use crate::random::Generator;
 use crate::tables::{Spline, SplineKind};
 
 /// Points a turn.
@@ -46,17 +47,10 @@ pub struct Study {
     pub rows: Vec<NoiseRow>,
 }
 
-/// Uniform numbers in [−0.5, 0.5) by SplitMix64. Source: Steele, Lea & Flood 2014.
+/// Uniform numbers in [−0.5, 0.5).
 fn uniform(seed: u64, count: usize) -> Vec<f64> {
-    let mut state = seed.wrapping_mul(0xD134_2543_DE82_EF95);
-    let mut next = || {
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
-    (0..count).map(|_| next()).collect()
+    let mut random = Generator::new(seed.wrapping_mul(0xD134_2543_DE82_EF95));
+    (0..count).map(|_| random.uniform(-0.5, 0.5)).collect()
 }
 
 /// √3 q N²/(2π)², the noise of the second derivative of a cubic spline through all points.

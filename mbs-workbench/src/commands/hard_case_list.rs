@@ -5,15 +5,15 @@ use std::num::NonZero;
 use std::panic::resume_unwind;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread::{available_parallelism, scope};
+use std::thread::{Builder, available_parallelism, scope};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::CommandError;
 use super::cost::{machine, methods};
 use super::document::Output;
 use super::hard_cases::{Arguments, FEW, VARIANTS, WHOLE, command, print, verdict};
 use super::report_files::{require_writable, write_report};
+use super::{CommandError, STACK};
 use crate::forge::{Blueprint, Study};
 use crate::hard_cases::course::Course;
 use crate::hard_cases::list::{Case, Listed, cases};
@@ -155,9 +155,13 @@ impl Work<'_> {
             found
         };
         let mut found: Vec<_> = scope(|threads| {
-            let started: Vec<_> = (0..cores).map(|_| threads.spawn(some)).collect();
-            let ended = started.into_iter().map(|thread| thread.join());
-            ended.flat_map(|found| found.unwrap_or_else(|panic| resume_unwind(panic))).collect()
+            let spawned = |_| Builder::new().stack_size(STACK).spawn_scoped(threads, some);
+            let started: Vec<_> = (1..cores).map(spawned).collect();
+            // A thread that does not start leaves its cases to the others, this one among them.
+            let own = some();
+            let ended = started.into_iter().flatten().map(|thread| thread.join());
+            let others = ended.flat_map(|found| found.unwrap_or_else(|panic| resume_unwind(panic)));
+            own.into_iter().chain(others).collect()
         });
         found.sort_by_key(|(index, _)| *index);
         found.into_iter().map(|(_, found)| found).collect()
@@ -182,9 +186,14 @@ impl Work<'_> {
             None => card.duration(equations.as_ref())?,
         };
         let own = Own { make: *make, equations: equations.as_ref() };
+        let (mut methods, mut seeds) = (self.methods.to_vec(), self.seeds.to_vec());
+        if let Some(few) = &description.few {
+            methods.retain(|method| few.methods.contains(&method.to_string()));
+            seeds.truncate(few.variants);
+        }
         let extent = Extent {
-            methods: self.methods.to_vec(),
-            seeds: self.seeds.to_vec(),
+            methods: methods.clone(),
+            seeds,
             in_turn: self.in_turn.then_some(index),
             until,
             description: Some(description.clone()),
@@ -192,11 +201,15 @@ impl Work<'_> {
         // What is run does not depend on the machine.
         let found = studied(&own, &extent, &Clock::of(WHOLE), &mut progress);
         self.bar.inc(1000_u64.saturating_sub(done));
-        let found = found.unwrap_or_else(|reason| not_moved(self.methods, reason));
+        let found = found.unwrap_or_else(|reason| not_moved(&methods, reason));
         let mut left_out = Vec::new();
         if found.not_run > 0 {
             left_out.push(format!("{}: {} variants, for which there was no time", case.name, found.not_run));
         }
+        left_out.extend(description.few.iter().map(|few| {
+            let methods = few.methods.join(", ");
+            format!("{}: all but {} variants by {methods}, for runs of minutes", case.name, few.variants)
+        }));
         left_out.extend(description.outside.iter().map(|outside| {
             let all = |names: &[String], whole: &str| {
                 if names.is_empty() { whole.to_string() } else { names.join(", ") }

@@ -54,6 +54,10 @@ use crate::forge::ForgeError;
 use crate::mismatch::Mismatch;
 use crate::text_file::TextFileError;
 
+/// Stack of a thread that runs mechanisms (bytes). Dense matrices are on it, for 82 coordinates with their multipliers half a megabyte
+/// each, and a build without optimisation keeps every copy.
+pub const STACK: usize = 64 << 20;
+
 /// Failure of a command.
 #[derive(Debug)]
 pub enum CommandError {

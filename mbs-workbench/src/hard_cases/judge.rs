@@ -6,7 +6,7 @@ use crate::erased::timed_runs::Seen;
 use crate::erased::timed_steps::Placed;
 use crate::hard_cases::instants::stretches;
 use crate::hard_cases::oracle::{Gap, Oracle, OracleState, Slack};
-use crate::hard_cases::variation::Random;
+use crate::hard_cases::variation::numbers;
 use crate::hard_cases::verdict::larger;
 
 /// Instants of a run at which the text is interpreted.
@@ -241,7 +241,7 @@ fn balance(
     bounds: Bounds,
     (seed, found): (u64, &mut Judgement),
 ) {
-    let mut random = Random::of(seed ^ 0xba1a);
+    let mut random = numbers(seed ^ 0xba1a);
     let mut worst: Vec<(f64, f64)> = Vec::new();
     let slack = Slack { rows: bounds.rows, forces: bounds.balance, pace: paces(run, scales) };
     let (mut broken, mut is_shared) = (Vec::new(), false);
@@ -255,7 +255,7 @@ fn balance(
         let state = &OracleState { held: held.forces, ..state.clone() };
         let w: Vec<f64> = scales
             .iter()
-            .map(|scale| scale * random.between(0.5, 1.0) * if random.index(2) == 0 { 1.0 } else { -1.0 })
+            .map(|scale| scale * random.uniform(0.5, 1.0) * if random.index(2) == 0 { 1.0 } else { -1.0 })
             .collect();
         match oracle.equations_of_motion(state, &w) {
             Ok(balance) if exceeds(balance.open(), bounds.balance) => {

@@ -2,7 +2,7 @@
 
 use crate::hard_cases::instants::Instants;
 use crate::hard_cases::references::{FIRST, Run, Varied, deviations};
-use crate::hard_cases::variation::Random;
+use crate::hard_cases::variation::numbers;
 use crate::setting::Resolution;
 
 /// Distance of the moved starts in ε.
@@ -27,7 +27,7 @@ impl Sensitivity {
     ) -> Result<Self, String> {
         let start = first.first().ok_or("a motion without a start")?;
         let moved = |sign: f64| {
-            let mut random = Random::of(0xf32);
+            let mut random = numbers(0xf32);
             let mut side = || if random.index(2) == 0 { sign } else { -sign };
             let rounding = |value: f64, scale: f64| ROUNDING * epsilon * value.abs().max(scale);
             let q = start.q.iter().zip(scales).map(|(q, scale)| q + side() * rounding(*q, *scale));

@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use crate::erased::variations::Change;
 use crate::hard_cases::similarity::{Dimension, POWERS, Similarity};
+use crate::random::Generator;
 
 /// Kind of a variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -102,41 +103,16 @@ const SHAKEN: f64 = 0.05;
 /// Largest distance of a moved frame, in the reference metric.
 const MOVED: f64 = 1e3;
 
-/// Pseudo-random numbers: SplitMix64.
-///
-/// Source: Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators".
-pub struct Random(u64);
-
-impl Random {
-    /// The sequence of a seed.
-    pub fn of(seed: u64) -> Self {
-        Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x6a09_e667_f3bc_c908)
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// A number from `low` to `high`.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
-    }
-
-    /// An index below `count`.
-    pub fn index(&mut self, count: usize) -> usize {
-        (self.bits() % count.max(1) as u64) as usize
-    }
+/// The random numbers of a variant.
+pub fn numbers(seed: u64) -> Generator {
+    Generator::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x6a09_e667_f3bc_c908)
 }
 
 impl Variation {
     /// The variant of a seed.
     pub fn of(seed: u64, subject: &VariedParts) -> Self {
         let class = subject.classes[(seed % subject.classes.len() as u64) as usize];
-        let random = &mut Random::of(seed);
+        let random = &mut numbers(seed);
         let mut variation = Variation {
             seed,
             class,
@@ -150,18 +126,18 @@ impl Variation {
         match class {
             Class::Steps => {
                 let factor = [0.5, 1.0, 2.0, 4.0][random.index(4)];
-                variation.finer = factor * random.between(0.95, 1.05);
+                variation.finer = factor * random.uniform(0.95, 1.05);
                 variation.words = format!("{:.3} times as many steps", variation.finer);
             }
             Class::Parameters => {
-                let value = |(index, low, high): &(usize, f64, f64)| (*index, random.between(*low, *high));
+                let value = |(index, low, high): &(usize, f64, f64)| (*index, random.uniform(*low, *high));
                 variation.values = subject.ranges.iter().map(value).collect();
                 variation.words = "parameters in their ranges".to_string();
             }
             Class::Guess => {
                 variation.shift = vec![0.0; subject.scales.len()];
                 for j in &subject.shaken {
-                    variation.shift[*j] = subject.scales[*j] * random.between(-SHAKEN, SHAKEN);
+                    variation.shift[*j] = subject.scales[*j] * random.uniform(-SHAKEN, SHAKEN);
                 }
                 variation.words = format!("guess shaken by up to {SHAKEN}");
             }
@@ -181,7 +157,7 @@ impl Variation {
                 variation.words = format!("a similar mechanism, 2^{power} times as large");
             }
             Class::Single | Class::Lanes => {
-                variation.finer = random.between(0.95, 1.05);
+                variation.finer = random.uniform(0.95, 1.05);
                 let numbers = if class == Class::Single { "f32" } else { "four lanes" };
                 variation.words = format!("{numbers}, {:.3} times as many steps", variation.finer);
             }
@@ -189,13 +165,13 @@ impl Variation {
         variation
     }
 
-    fn frame(&mut self, subject: &VariedParts, random: &mut Random) {
+    fn frame(&mut self, subject: &VariedParts, random: &mut Generator) {
         let count = subject.scales.len();
         let unit = |i: usize| (0..count).map(|j| f64::from(u8::from(i == j))).collect();
         self.change.map = (0..count).map(unit).collect();
         self.change.shift = vec![0.0; count];
-        let (angle, far) = (random.between(0.0, TAU), 10_f64.powf(random.between(0.0, MOVED.log10())));
-        let direction = random.between(0.0, TAU);
+        let (angle, far) = (random.uniform(0.0, TAU), 10_f64.powf(random.uniform(0.0, MOVED.log10())));
+        let direction = random.uniform(0.0, TAU);
         let (sin, cos) = angle.sin_cos();
         for point in &subject.points {
             // In space about the last axis: each turn of a frame is made of such ones.
@@ -212,7 +188,7 @@ impl Variation {
 }
 
 /// An order of rows among those of one kind, and factors.
-fn rows(kinds: &[u64], random: &mut Random) -> Vec<(usize, f64)> {
+fn rows(kinds: &[u64], random: &mut Generator) -> Vec<(usize, f64)> {
     let mut order: Vec<usize> = (0..kinds.len()).collect();
     for i in (1..order.len()).rev() {
         let j = random.index(i + 1);

@@ -5,6 +5,7 @@ use mbs_runtime::{Function, Interval, Scalar};
 
 use super::Points;
 use super::reader::ReadFault;
+use crate::random::Generator;
 
 /// Kind of spline.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,24 +151,15 @@ impl Spline {
         };
         let [first, last] = self.range();
         let places = PLACES * self.knots.len();
-        let (mut squares, mut state) = (0.0, SEED);
+        let (mut squares, mut random) = (0.0, Generator::new(SEED));
         for _ in 0..SIGNS {
-            let signs: Vec<f64> = x.iter().map(|_| sign(&mut state)).collect();
+            let signs: Vec<f64> = x.iter().map(|_| random.sign()).collect();
             let fit = Self::along(x, &signs, kind, self.knots.clone())?;
             let place = |index: usize| first + (last - first) * (index as f64 + 0.5) / places as f64;
             squares += (0..places).map(|index| fit.derivatives(place(index))[2].powi(2)).sum::<f64>();
         }
         Ok((squares / (SIGNS as usize * places) as f64).sqrt())
     }
-}
-
-/// The sign of the next number of SplitMix64. Source: Steele, Lea & Flood 2014.
-fn sign(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    if (z ^ (z >> 31)) >> 63 == 0 { 1.0 } else { -1.0 }
 }
 
 /// Knots from the first point on, evenly to the last one or around the period.

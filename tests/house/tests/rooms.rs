@@ -70,6 +70,7 @@ const HOUSES: &[House] = &[
         rooms: &[
             "target_directory",
             "hash",
+            "random",
             "double_double",
             "setting",
             "motion",

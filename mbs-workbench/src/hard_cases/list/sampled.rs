@@ -9,7 +9,7 @@ use crate::hard_cases::list::description::{Description, MethodKind, Samples};
 use crate::hard_cases::list::stored::Miss;
 use crate::hard_cases::oracle::{Gap, Oracle, OracleState};
 use crate::hard_cases::study::Extent;
-use crate::hard_cases::variation::{Class, Random, Variation, VariedParts};
+use crate::hard_cases::variation::{Class, Variation, VariedParts, numbers};
 use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 use crate::setting::Numbers;
 
@@ -114,7 +114,7 @@ impl Encoder<'_> {
     /// Time stamps (s) and angles (rad) of the samples of a variant.
     fn samples(&self, oracle: &Oracle, until: f64, seed: u64) -> Result<Vec<(f64, f64)>, Gap> {
         let Samples { course, rate, bits, dropped, doubled, backwards, .. } = self.samples;
-        let mut random = Random::of(seed);
+        let mut random = numbers(seed);
         let step = TAU / 2.0_f64.powi(*bits);
         let mut samples = Vec::new();
         for k in 0..=(until * rate) as u32 {
@@ -124,13 +124,13 @@ impl Encoder<'_> {
                 OracleState { t, q: zeros.clone(), qd: zeros.clone(), qdd: zeros, ..OracleState::default() };
             let asked = oracle.quantities(course, &state)?.first().map_or(f64::NAN, |found| found.value);
             let angle = step * (asked / step).round();
-            let chance = random.between(0.0, 1.0);
+            let chance = random.uniform(0.0, 1.0);
             if k > 0 && chance < *dropped {
                 continue;
             }
-            let stamp = if k > 2 && random.between(0.0, 1.0) < *backwards { t - 2.0 / rate } else { t };
+            let stamp = if k > 2 && random.uniform(0.0, 1.0) < *backwards { t - 2.0 / rate } else { t };
             samples.push((stamp, angle));
-            if random.between(0.0, 1.0) < *doubled {
+            if random.uniform(0.0, 1.0) < *doubled {
                 samples.push((stamp, angle));
             }
         }
