@@ -238,3 +238,42 @@ fn a_block_comes_to_rest_by_friction_on_a_multiplier() {
     slides(AugmentedLagrangian, 5e-4);
     slides(Extrapolated, 1e-7);
 }
+
+mechanism! {
+    /// Two blocks that stop at one instant on a slope, which friction then holds and loses just so.
+    pub mechanism Stopping;
+    const SLOPE: rad = 30deg;
+    const MU: 1 = 0.5;
+    const V: m/s = 1;
+    coord P: [m; 2] = [0, 0];
+    coord Q: [m; 2] = [0, 0];
+    body held { mass: 1, com: P }
+    body lost { mass: 2, com: Q }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint below { dot(P, unit(SLOPE + 90deg)) == 0m; dot(Q, unit(SLOPE + 90deg)) == 0m; }
+    friction holds { along: dot(P, unit(SLOPE)), normal: lambda(below[0]), coefficient: MU, sticks: tan(SLOPE)*1.001 }
+    friction loses { along: dot(Q, unit(SLOPE)), normal: lambda(below[1]), coefficient: MU, sticks: tan(SLOPE)*0.999 }
+    start P = [0, 0] rate V*unit(SLOPE);
+    start Q = [0, 0] rate V*unit(SLOPE);
+}
+
+/// Steps of rounding's length lie between the two stops, over which a difference of places gives no velocity.
+fn stops<X: Method<Stopping<f64>, f64, 4, 2> + Copy>(method: X, counts: core::ops::Range<u32>) {
+    let (sine, friction) = (0.5, 0.5 * 0.75_f64.sqrt());
+    let rest = 0.3 - 1.0 / (9.81 * (sine + friction));
+    let expected = 0.5 * 9.81 * (sine - friction) * rest * rest;
+    for count in counts {
+        let run = Simulation::start_from_text(Stopping::default(), method, 0.0_f64);
+        let mut run = run.expect("it starts");
+        run.step_to(0.3, count).unwrap_or_else(|failure| panic!("{count} steps: {failure}"));
+        let [x, y, ahead, above] = *run.q();
+        let gone = (x - ahead).hypot(y - above);
+        assert!((gone - expected).abs() < 1e-9, "{count}: {gone} {expected}");
+    }
+}
+
+#[test]
+fn two_blocks_stop_at_one_instant() {
+    stops(Extrapolated, 64..96);
+    stops(AugmentedLagrangian, 64..80);
+}

@@ -1,6 +1,6 @@
 //! Augmented Lagrangian of index 3 with projections: stiff and redundant mechanisms at coarse steps.
 
-use crate::dynamics::formulations::projection::project_position;
+use crate::dynamics::formulations::projection::{Projection, project_position};
 use crate::dynamics::formulations::unstabilized::Unstabilized;
 use crate::dynamics::implicit::held_rows::Along;
 use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Unknowns};
@@ -16,7 +16,7 @@ use crate::linear_algebra::orthogonal::margin_of_rows;
 use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::{forces, singular};
+use crate::tolerances::{forces, motion, singular};
 
 /// Margin below which corrections take the multipliers along from the second on: twice that with which the springs leave a quarter.
 const WEAK: f64 = 4e-2;
@@ -65,7 +65,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
         let next = model.moved(from.t, from.t + h, |model| {
-            let next = self.stepped(model, from, h, counts)?;
+            let next = match short(model, from, h, counts)? {
+                Some(next) => next,
+                None => self.stepped(model, from, h, counts)?,
+            };
             model.settled_in_modes(next, counts)
         })?;
         model.require_branch_of_implicit_step(from, &next)?;
@@ -213,6 +216,44 @@ impl AugmentedLagrangian {
     }
 }
 
+/// Size of places (m) that is rounding.
+fn rounding_of_places<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    q: &[R; N],
+) -> R {
+    motion::NO_VALUE.of::<R>() * model.largest(q).max(R::constant(1.0))
+}
+
+/// The end of a step of `h` (s) of a text with modes that is so short that the rule knows the velocity, a difference of places over h,
+/// worse than the accelerations at both ends change it; `None` for another step. Changes of modes make such steps. Heun's rule is of the
+/// same order.
+#[inline(always)]
+fn short<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    from: &Instant<R, N, M, S::States>,
+    h: R,
+    counts: &mut Counts,
+) -> Result<Option<Instant<R, N, M, S::States>>, Failure> {
+    let changes = |qdd: &[R; N]| !(h * h * model.largest(qdd)).less(rounding_of_places(model, &from.y.q));
+    if const { !S::HAS_MODES } || changes(&from.solved.rate.qd) {
+        return Ok(None);
+    }
+    let (t, lambda) = (from.t + h, &from.solved.lambda);
+    let mut ahead = from.y.plus(h, &[1.0], [&from.solved.rate]);
+    // A long step that begins without an acceleration may lead anywhere.
+    let settled = model.settle(&Projection::default(), t, &mut ahead, counts);
+    let Ok(solved) = settled.and_then(|()| Unstabilized.solve(model, t, &ahead, lambda, counts)) else {
+        return Ok(None);
+    };
+    if changes(&solved.rate.qd) {
+        return Ok(None);
+    }
+    let mut y = from.y.plus(h, &[0.5, 0.5], [&from.solved.rate, &solved.rate]);
+    model.settle(&Projection::default(), t, &mut y, counts)?;
+    let solved = Solved { margin: from.solved.margin, ..solved };
+    Ok(Some(Instant { t, y, solved, carried: solved.rate.qd }))
+}
+
 /// Velocities and accelerations of the trapezoidal rule that lead from `start` to coordinates which are `change` (N) further.
 fn trapezoidal<R: Real, const N: usize, Z>(
     start: &IntegratorState<R, N, Z>,
@@ -241,7 +282,7 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &lambda))?;
     let required = mechanism.phi_t(parameters, &position).each(|rate| -rate);
     y.qd = penalized.put(&y.qd, &required).0;
-    require_rates(model, t, (&penalized.phi_q, &required), (&from.y.qd, &y.qd))?;
+    require_rates(model, (t, h), (&penalized.phi_q, &required), (&from.y, &y.qd))?;
     let (qdd, taken) = penalized.put(&qdd, &mechanism.gamma(parameters, &position, &y.qd));
     let lambda = lambda.plus(R::constant(1.0), &[1.0], [&taken]);
     model.require_unshared_by_rank((&position, t), &y, &lambda)?;
@@ -256,15 +297,17 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 const ACROSS: f64 = 1e-2;
 
 /// Fails where a row does not hold the velocity that was put onto it, because it loses all its entries: Φ_q `qd` = `required`, M. A step that
-/// ends at rest is judged by the velocity `before` it.
+/// ends at rest is judged by the velocity `before` it, one that begins there too by the rounding of places over its length `h` (s).
 #[inline]
 fn require_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    t: R,
+    (t, h): (R, R),
     (phi_q, required): (&[[R; N]; M], &[R; M]),
-    (before, qd): (&[R; N], &[R; N]),
+    (before, qd): (&IntegratorState<R, N, S::States>, &[R; N]),
 ) -> Result<(), Failure> {
-    let allowed = R::constant(ACROSS) * model.largest(qd).max(model.largest(before));
+    let rounding = rounding_of_places(model, &before.q) / h;
+    let speed = model.largest(qd).max(model.largest(&before.qd)).max(rounding);
+    let allowed = R::constant(ACROSS) * speed;
     for (row, required) in phi_q.iter().zip(required) {
         let open = row.iter().zip(qd).fold(-*required, |sum, (entry, rate)| sum + *entry * *rate);
         let entries = row.iter().zip(&model.metric.coordinates);
