@@ -13,6 +13,7 @@ use mbs_runtime::driver::{End, SMOOTH};
 use mbs_runtime::{Function, Interval, Scalar};
 
 use super::CommandError;
+use super::given_file::unreadable;
 use super::law_options::{self, is_law, usage};
 use crate::cams::lift::Lift;
 use crate::mismatch::nearest;
@@ -244,7 +245,7 @@ fn table(declared: &DeclaredFunction, form: &str) -> Result<(Form, String), Comm
                 law_options::laws()
             ),
         };
-        usage(format!("`{OPTION} {name}=…`: {path} cannot be read: {error}\nhelp: {help}"))
+        usage(format!("`{OPTION} {name}=…`: {path} {}", unreadable(Path::new(path), &error, &help)))
     })?;
     let mut points = read(&bytes, columns.as_ref()).map_err(|mut fault| {
         if fault.message == UNITS_UNKNOWN {
