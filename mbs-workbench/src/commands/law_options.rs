@@ -12,7 +12,7 @@ use crate::cams::bspline::text;
 use crate::cams::lift::{FLANKS, Lift};
 use crate::cams::shapes::Harmonics;
 use crate::mismatch::nearest;
-use crate::tables::{Columns, Spline, SplineKind, close_period, explained, read};
+use crate::tables::{Columns, ReadFault, Spline, SplineKind, close_period, explained, read};
 
 /// Dimensions of a law.
 #[derive(Args, Clone, Debug)]
@@ -234,8 +234,8 @@ impl LawOptions {
                 let (height, duration) = text
                     .split_once(',')
                     .ok_or_else(|| wrong("height and duration are needed".to_string()))?;
-                let height = if turns { angle(height) } else { length(height) };
-                lift.with_ramps(height.map_err(wrong)?, angle(duration).map_err(wrong)?)?
+                let height = if turns { positive_angle(height) } else { positive_length(height) };
+                lift.with_ramps(height.map_err(wrong)?, positive_angle(duration).map_err(wrong)?)?
             }
         };
         Ok(GivenLaw { lift: self.corrected(lift)?, source: word.as_bytes().to_vec(), table: None })
@@ -343,12 +343,17 @@ impl LawOptions {
                 "a lift in {} over an angle is needed, not {} over {}",
                 expected, up.name, across.name
             );
-            return Err(named(format!("{why}\nhelp: name the columns, as `--columns \"deg, mm\"`")));
+            let columns = if turns { "deg, deg" } else { "deg, mm" };
+            return Err(named(format!("{why}\nhelp: name the columns, as `--columns \"{columns}\"`")));
         }
         let knots = self.knots.map_or_else(String::new, |knots| format!(", a fit with {knots} knots"));
         let table = named_table(word, points.x.len()) + &knots;
         let period = core::f64::consts::TAU;
-        close_period(&mut points, period).map_err(|fault| named(fault.to_string()))?;
+        close_period(&mut points, period).map_err(|fault| {
+            let cure =
+                "write the lift over one turn, the last line a step before the first one or equal to it";
+            named(ReadFault { cure: cure.to_string(), ..fault }.to_string())
+        })?;
         let spline = Spline::fit(&points.x, &points.y, SplineKind::PeriodicQuintic(period), self.knots);
         let spline = spline.map_err(|error| named(explained(error, &points).to_string()))?;
         Ok(GivenLaw { lift: self.corrected(Lift::table(spline)?)?, source: bytes, table: Some(table) })
