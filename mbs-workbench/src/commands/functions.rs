@@ -193,6 +193,9 @@ fn made(declared: &DeclaredFunction, given: &[(String, String)]) -> Result<Given
     };
     if order < usize::from(declared.continuity) {
         let cure = match (&form, declared.period) {
+            (Form::Law(_), _) if OF_LAWS < usize::from(declared.continuity) => {
+                "laws have three at most; give a table of it, which has four over a whole period"
+            }
             (Form::Law(_), _) => "take a law with more, as `4567`, or a table of it",
             (Form::Table(_), Some(_)) => "a periodic table has four; declare no more",
             (Form::Table(_), None) => {
