@@ -157,7 +157,7 @@ fn spans(apart: f64, arm: f64, reach: f64) -> Result<(), CamError> {
         return Ok(());
     }
     let why = format!(
-        "the roller does not reach the base circle: {:.4} mm and the arm of {:.4} mm must span {:.4} mm",
+        "the roller does not reach the base circle: {:.4} mm and the arm of {:.4} mm must span {:.4} mm\nhelp: change arm, pivot or roller until the three lengths make a triangle",
         1e3 * apart,
         1e3 * arm,
         1e3 * reach
@@ -237,7 +237,13 @@ impl Follower {
                 if offset.abs() < base + radius {
                     Ok(())
                 } else {
-                    fault("offset", "the axis passes beside the base circle".to_string())
+                    fault(
+                        "offset",
+                        format!(
+                            "the axis passes beside the base circle\nhelp: less than {:.4} mm, or a larger base circle",
+                            1e3 * (base + radius)
+                        ),
+                    )
                 }
             }
             Follower::OscillatingFlat { base, face, .. } => {
@@ -245,7 +251,7 @@ impl Follower {
                 if cosine.abs() < 1.0 {
                     Ok(())
                 } else {
-                    fault("pivot", "the face does not reach the base circle".to_string())
+                    fault("pivot", "the face does not reach the base circle\nhelp: a pivot farther away, or a smaller base circle".to_string())
                 }
             }
             Follower::OscillatingRoller { base, arm, radius, .. } => {

@@ -2,11 +2,13 @@
 
 use core::f64::consts::{PI, TAU};
 
-use mbs_runtime::driver::{Cycloid, Law, Polynomial345, Polynomial4567, Rise};
+use mbs_runtime::driver::{Cycloid, Law, Polynomial345, Polynomial4567, Rise, SMOOTH, centred};
 use mbs_runtime::{Function, Interval, Real};
 
 use super::bspline::BSpline;
-use super::shapes::{ConstantVelocity, EvenPowers, ModifiedSine, ModifiedTrapezoid, ORDERS, SimpleHarmonic};
+use super::shapes::{
+    ConstantVelocity, EvenPowers, Harmonics, ModifiedSine, ModifiedTrapezoid, ORDERS, SimpleHarmonic,
+};
 use super::{CamError, positive};
 use crate::tables::Spline;
 
@@ -50,6 +52,8 @@ enum Part {
     Table(Spline),
     /// Polynomials between knots, 0 beyond them.
     Pieces(BSpline),
+    /// A sum of harmonics, without rest.
+    Harmonics(Harmonics),
 }
 
 /// A lift over the cam angle, periodic with a turn.
@@ -172,6 +176,7 @@ impl Part {
             Part::Step { flank, start, duration, height } => flank.jet(x, *start, *duration, *height),
             Part::Table(spline) => spline.jet(x),
             Part::Pieces(law) => law.jet(x),
+            Part::Harmonics(law) => law.jet(x),
         }
     }
 
@@ -193,6 +198,7 @@ impl Part {
             }
             Part::Table(spline) => spline.enclosure(from, to),
             Part::Pieces(law) => Some(law.enclosure([from, to])),
+            Part::Harmonics(law) => Some(centred(|x| law.jet(x), from, to)),
         }
     }
 
@@ -202,6 +208,7 @@ impl Part {
             Part::Step { flank, .. } => flank.order(),
             Part::Table(spline) => spline.order(),
             Part::Pieces(law) => law.order(),
+            Part::Harmonics(_) => SMOOTH,
         }
     }
 
@@ -213,6 +220,7 @@ impl Part {
             }
             Part::Table(spline) => spline.knots.clone(),
             Part::Pieces(law) => law.joints().to_vec(),
+            Part::Harmonics(_) => Vec::new(),
         }
     }
 }
@@ -238,7 +246,7 @@ impl Lift {
         let (rise, back) = (positive("rise", rise)?, positive("return", back)?);
         let height = positive("lift", height)?;
         if !(dwell.is_finite() && dwell >= 0.0) {
-            return Err(CamError::Value("dwell", "it is negative".to_string()));
+            return Err(CamError::Value("dwell", "it is negative\nhelp: 0 is none".to_string()));
         }
         let end = within_a_turn(rise + dwell + back)?;
         let up = Part::Step { flank, start: 0.0, duration: rise, height };
@@ -274,6 +282,11 @@ impl Lift {
         Ok(Lift { parts: vec![Part::Pieces(law)], origin, span: [first, last], polydyne: 0.0 })
     }
 
+    /// A sum of harmonics of the cam angle: all derivatives are continuous, and nothing rests.
+    pub fn harmonics(law: Harmonics) -> Self {
+        Lift { parts: vec![Part::Harmonics(law)], origin: -PI, span: [-PI, PI], polydyne: 0.0 }
+    }
+
     /// With ramps of constant velocity: `height` (m or rad) over `duration` (rad) before the opening and after the closing.
     ///
     /// The last quarter of the opening ramp, which ends its velocity, lies under the flank; the closing one is its mirror.
@@ -284,7 +297,10 @@ impl Lift {
         let (height, duration) = (positive("ramp", height)?, positive("ramp", duration)?);
         let [open, close] = self.span;
         if close - open + 1.5 * duration > TAU || duration > close - open {
-            return Err(CamError::Value("ramp", "it is longer than its dwell, or than the lift".to_string()));
+            return Err(CamError::Value(
+                "ramp",
+                "it is longer than its dwell, or than the lift\nhelp: shorten it".to_string(),
+            ));
         }
         let ramp =
             |start: f64, height: f64| Part::Step { flank: Flank::ConstantVelocity, start, duration, height };
@@ -302,7 +318,7 @@ impl Lift {
     pub fn with_polydyne(mut self, c: f64) -> Result<Self, CamError> {
         self.polydyne = positive("polydyne correction", c)?;
         if self.parts.iter().map(Part::order).min().unwrap_or(0) < 3 {
-            let why = "it costs two orders of continuity, and the law has fewer than three";
+            let why = "it costs two orders of continuity, and the law has fewer than three\nhelp: take `4567` or `even:2,6,8,10,12`";
             return Err(CamError::Value("polydyne correction", why.to_string()));
         }
         Ok(self)
@@ -419,7 +435,13 @@ fn within_a_turn(duration: f64) -> Result<f64, CamError> {
     if duration <= TAU * (1.0 + 1e-12) {
         Ok(duration)
     } else {
-        Err(CamError::Value("duration", format!("{:.6} deg are more than a turn", duration.to_degrees())))
+        Err(CamError::Value(
+            "duration",
+            format!(
+                "{:.6} deg are more than a turn\nhelp: rise, dwell and return together last 360 deg at most",
+                duration.to_degrees()
+            ),
+        ))
     }
 }
 

@@ -275,7 +275,10 @@ fn resized(cam: &Cam, size: Size, value: f64) -> Result<Cam, CamError> {
             follower = Follower::rocker(sizes[0], *pivot, x.hypot(y), sizes[1], side, *valve_pad)?;
         }
         (Follower::Flat { .. } | Follower::OscillatingFlat { .. }, Size::Pad) => {
-            return Err(CamError::Value("pad", "a flat face has none".to_string()));
+            return Err(CamError::Value(
+                "pad",
+                "a flat face has none\nhelp: its base circle has a least size".to_string(),
+            ));
         }
     }
     Cam::new(cam.lift.clone(), follower, cam.direction)

@@ -75,10 +75,16 @@ impl Profile {
         if let Some(odd) =
             sorted.iter().position(|[angle, r]| !(angle.is_finite() && r.is_finite() && *r > 0.0))
         {
-            return fault(format!("point {} has no finite angle with a positive radius", odd + 1));
+            return fault(format!(
+                "point {} has no finite angle with a positive radius\nhelp: a profile has its points about the cam's centre; a table of the lift is read without `--measured`",
+                odd + 1
+            ));
         }
         if sorted.len() < 24 {
-            return fault(format!("{} points are too few; 24 are the least", sorted.len()));
+            return fault(format!(
+                "{} points are too few; 24 are the least\nhelp: measure more points over the turn",
+                sorted.len()
+            ));
         }
         sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
         if let Some(pair) = sorted.windows(2).find(|pair| pair[0][0] == pair[1][0]) {

@@ -13,6 +13,8 @@ use core::error::Error;
 use core::fmt;
 
 pub mod bspline;
+#[cfg(test)]
+mod digits_tests;
 pub mod files;
 pub mod follower;
 pub mod jet;
@@ -84,6 +86,9 @@ fn positive(name: &'static str, value: f64) -> Result<f64, CamError> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
-        Err(CamError::Value(name, format!("{value} is not above 0")))
+        Err(CamError::Value(
+            name,
+            format!("{value} is not above 0\nhelp: give a number above 0, in SI units"),
+        ))
     }
 }

@@ -67,7 +67,10 @@ impl<const ORDER: usize> Pitch<ORDER> {
             let angle = pitch.at(theta).angle();
             let turning = sense * angle.rate().value();
             if turning.is_nan() || turning <= 0.0 {
-                let why = format!("it has no polar radius at {:.3} deg of the cam", theta.to_degrees());
+                let why = format!(
+                    "it has no polar radius at {:.3} deg of the cam\nhelp: a smaller lift, a longer rise, or a larger base circle",
+                    theta.to_degrees()
+                );
                 return fault("pitch curve", why);
             }
             match place {
@@ -84,7 +87,10 @@ impl<const ORDER: usize> Pitch<ORDER> {
             return fault("pitch curve", "it does not go round the cam's centre once".to_string());
         }
         if let Some(theta) = pitch.turns_back() {
-            let why = format!("it has no polar radius at {:.3} deg of the cam", theta.to_degrees());
+            let why = format!(
+                "it has no polar radius at {:.3} deg of the cam\nhelp: a smaller lift, a longer rise, or a larger base circle",
+                theta.to_degrees()
+            );
             return fault("pitch curve", why);
         }
         let joints = cam.lift.joints();

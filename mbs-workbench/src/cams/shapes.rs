@@ -216,6 +216,61 @@ impl EvenPowers {
     }
 }
 
+/// A sum of harmonics of the cam angle: mean + Σ aₖ cos kθ + bₖ sin kθ, k = 1, 2, ….
+#[derive(Clone, Debug, PartialEq)]
+pub struct Harmonics {
+    mean: f64,
+    amplitudes: Vec<[f64; 2]>,
+}
+
+/// Most harmonics: a wave of one degree.
+const MOST_HARMONICS: usize = 360;
+
+impl Harmonics {
+    /// Mean and amplitudes [aₖ, bₖ], all in m or in rad.
+    ///
+    /// # Errors
+    /// [`CamError::Value`] of amplitudes that are not finite, are more than 360, or move nothing.
+    pub fn new(mean: f64, amplitudes: &[[f64; 2]]) -> Result<Self, CamError> {
+        let fault = |why: &str| Err(CamError::Value("harmonics", why.to_string()));
+        if amplitudes.len() > MOST_HARMONICS {
+            return fault("they are more than 360, of which the last one is a wave of one degree");
+        }
+        if !amplitudes.iter().flatten().chain([&mean]).all(|value| value.is_finite()) {
+            return fault("an amplitude is not finite");
+        }
+        if amplitudes.iter().flatten().all(|value| *value == 0.0) {
+            return fault(
+                "all amplitudes are 0, so the law moves nothing\nhelp: write the mean, then cosine and sine of each, as `harmonics:4mm, -4mm 0.5mm`",
+            );
+        }
+        Ok(Harmonics { mean, amplitudes: amplitudes.to_vec() })
+    }
+
+    /// Value and derivatives at the cam angle `x` (rad).
+    pub fn jet<T: Scalar, const K: usize>(&self, x: T) -> [T; K] {
+        let mut sum = [T::constant(0.0); K];
+        let mut order = T::constant(0.0);
+        for [a, b] in &self.amplitudes {
+            order = order + T::constant(1.0);
+            let ([sine], [cosine]) = T::sin_cos([order * x]);
+            let (a, b) = (T::constant(*a), T::constant(*b));
+            let [along, across] = [a * cosine + b * sine, b * cosine - a * sine];
+            let mut factor = T::constant(1.0);
+            for (derivative, quarter) in
+                sum.iter_mut().zip([along, across, -along, -across].into_iter().cycle())
+            {
+                *derivative = *derivative + factor * quarter;
+                factor = factor * order;
+            }
+        }
+        if let Some(value) = sum.first_mut() {
+            *value = *value + T::constant(self.mean);
+        }
+        sum
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

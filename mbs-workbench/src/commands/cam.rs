@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use mbs_runtime::driver::SMOOTH;
 use serde_json::{Value, json};
 
 use super::CommandError;
@@ -11,7 +12,9 @@ pub use super::cam_options::Arguments;
 use super::cam_options::Sizes;
 use super::chosen::write_file;
 use super::document::Output;
+use super::given_file::unreadable;
 use super::law_options::GivenLaw;
+use super::report_files::require_writable;
 use crate::cams::files::{csv, dxf, rust, svg, turn};
 use crate::cams::follower::{Cam, Direction, Follower};
 use crate::cams::lift::Lift;
@@ -95,8 +98,12 @@ fn cams(arguments: &Arguments, lift: &Lift) -> Result<Vec<Made>, CommandError> {
 
 /// Makes the profile of a cam, says where limits are broken, writes page, CSV and DXF, or prints a Rust constant.
 pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+    let directory = arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join("cam"));
+    if arguments.rust.is_none() {
+        require_writable(&directory)?;
+    }
     if arguments.measured {
-        return recover(arguments, out);
+        return recover(arguments, &directory, out);
     }
     let GivenLaw { lift, source, table } = arguments.law()?;
     let all = cams(arguments, &lift)?;
@@ -116,7 +123,6 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
         return Ok(out.write_all(code.as_bytes())?);
     }
     let origin = Origin::of_table(&name, &source);
-    let directory = arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join("cam"));
     let sentences: Vec<String> = all.iter().map(|one| sentence(arguments, one)).collect();
     let of_table = table.iter().map(|table| format!("Lift law: {table}."));
     let sentence = sentences.iter().cloned().chain(of_table).collect::<Vec<_>>().join(" ");
@@ -163,7 +169,7 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
 }
 
 /// The lift of a measured profile, as a table.
-fn recover(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+fn recover(arguments: &Arguments, directory: &Path, out: &mut Output) -> Result<(), CommandError> {
     let followers = arguments.followers()?;
     let [(_, follower)] = followers.as_slice() else {
         let why =
@@ -171,7 +177,10 @@ fn recover(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
         return Err(CommandError::Usage(why.to_string()));
     };
     let named = |message: String| CommandError::Failed(format!("{}: {message}", arguments.law));
-    let bytes = fs::read(&arguments.law).map_err(|error| named(format!("cannot be read: {error}")))?;
+    let bytes = fs::read(&arguments.law).map_err(|error| {
+        let help = "name a CSV file of the profile, polar as `deg, mm` or x and y as `mm, mm`";
+        named(unreadable(Path::new(&arguments.law), &error, help))
+    })?;
     let points = read_unordered(&bytes, arguments.of_law.columns.as_ref())
         .map_err(|fault| named(fault.to_string()))?;
     let pairs: Vec<[f64; 2]> = points.x.iter().zip(&points.y).map(|(x, y)| [*x, *y]).collect();
@@ -193,7 +202,6 @@ fn recover(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
         text += &format!("{:?},{s:?},{v:?},{a:?}\n", theta.to_degrees());
     }
     let origin = Origin::of_table(&arguments.law, &bytes);
-    let directory = arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join("cam"));
     let path = directory.join("lift.csv");
     write_file(&path, &origin.csv(&text))?;
     out.put_file("lift", &path);
@@ -330,7 +338,10 @@ fn print_law(
     let continuity = lift.continuity();
     let checked = if continuity.confirms() { "checked at its joints" } else { "NOT confirmed at its joints" };
     let table = table.map_or_else(String::new, |table| format!("; {table}"));
-    writeln!(out, "law          {} continuous derivatives, {checked}{table}", continuity.stated)?;
+    match continuity.stated {
+        SMOOTH => writeln!(out, "law          all derivatives are continuous{table}")?,
+        count => writeln!(out, "law          {count} continuous derivatives, {checked}{table}")?,
+    }
     for order in 0..3 {
         let (name, unit) = [("lift", ""), ("velocity", "/rad"), ("acceleration", "/rad^2")][order];
         let values: Vec<f64> =

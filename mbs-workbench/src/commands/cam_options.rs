@@ -1,11 +1,16 @@
 //! Options of `mbs cam`: follower and limits.
 
+use std::f64::consts::FRAC_PI_2;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, ValueEnum};
 
 use super::CommandError;
-use super::law_options::{GivenLaw, LawOptions, angle, in_unit, length, number, usage};
+use super::chosen::finite;
+use super::law_options::{
+    GivenLaw, LawOptions, angle, clap_reason, length, positive_angle, positive_in_unit, positive_length,
+    usage,
+};
 use crate::cams::CamError;
 use crate::cams::follower::{Direction, Follower, Side};
 use crate::cams::limits::{Limits, Load};
@@ -56,10 +61,10 @@ pub enum Sizes {
 #[derive(Args, Clone, Debug)]
 pub struct Dimensions {
     /// Radius of the base circle, of the contour at lift 0
-    #[arg(long, value_name = "17mm", value_parser = length)]
+    #[arg(long, value_name = "17mm", value_parser = positive_length, allow_hyphen_values = true)]
     base: Option<f64>,
     /// Radius of the roller or pad
-    #[arg(long, value_name = "8mm", value_parser = length)]
+    #[arg(long, value_name = "8mm", value_parser = positive_length, allow_hyphen_values = true)]
     roller: Option<f64>,
     /// Distance of a roller's axis from the cam's centre [default: 0mm]
     #[arg(long, value_name = "3mm", value_parser = length, allow_hyphen_values = true)]
@@ -68,7 +73,7 @@ pub struct Dimensions {
     #[arg(long, value_name = "60mm,10mm", value_parser = point, allow_hyphen_values = true)]
     pivot: Option<[f64; 2]>,
     /// From the pivot to the roller's centre
-    #[arg(long, value_name = "55mm", value_parser = length)]
+    #[arg(long, value_name = "55mm", value_parser = positive_length, allow_hyphen_values = true)]
     arm: Option<f64>,
     /// Distance of an oscillating face from its pivot, positive away from the cam [default: 0mm]
     #[arg(long, value_name = "4mm", value_parser = length, allow_hyphen_values = true)]
@@ -93,7 +98,7 @@ struct Closer {
 #[derive(Args)]
 pub struct Arguments {
     /// Law: `even:2,6,8,10,12`, `345`, `4567`, `cycloid`, `modified-sine`, `modified-trapezoid`, `harmonic`, `constant-velocity`;
-    /// `bspline:FILE` or `bspline:degree 5; knots …; at …`; or a table of the lift over one turn as CSV
+    /// `harmonics:4mm, -4mm 0.5mm`; `bspline:FILE` or `bspline:degree 5; knots …; at …`; or a table of the lift over one turn as CSV
     pub law: String,
     /// Kind of follower
     #[arg(long, value_enum)]
@@ -101,7 +106,8 @@ pub struct Arguments {
     #[command(flatten)]
     pub of_law: LawOptions,
     /// The file is a measured profile about the cam's centre, polar as "deg, mm" or x and y as "mm, mm": find its lift
-    #[arg(long, conflicts_with_all = ["lift", "least", "rust", "polydyne"])]
+    #[arg(long, conflicts_with_all = ["lift", "duration", "rise", "dwell", "back", "ramp", "polydyne", "knots", "least",
+        "rust", "radius", "wheel", "pressure_angle", "outer", "shaft", "half_face", "hertz"])]
     pub measured: bool,
     #[command(flatten)]
     dimensions: Dimensions,
@@ -118,37 +124,37 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     pub least: Option<Sizes>,
     /// Least radius of a convex contour
-    #[arg(long, value_name = "2mm", value_parser = length)]
+    #[arg(long, value_name = "2mm", value_parser = positive_length, allow_hyphen_values = true)]
     radius: Option<f64>,
     /// Radius of the grinding wheel, which concave flanks must exceed
-    #[arg(long, value_name = "60mm", value_parser = length)]
+    #[arg(long, value_name = "60mm", value_parser = positive_length, allow_hyphen_values = true)]
     wheel: Option<f64>,
     /// Largest pressure angle
-    #[arg(long, value_name = "30deg", value_parser = angle)]
+    #[arg(long, value_name = "30deg", value_parser = pressure_angle, allow_hyphen_values = true)]
     pressure_angle: Option<f64>,
     /// Largest radius of the contour
-    #[arg(long, value_name = "40mm", value_parser = length)]
+    #[arg(long, value_name = "40mm", value_parser = positive_length, allow_hyphen_values = true)]
     outer: Option<f64>,
     /// Radius of the shaft, which the follower stays clear of [default: 0mm, the cam's centre alone]
-    #[arg(long, value_name = "9mm", value_parser = length)]
+    #[arg(long, value_name = "9mm", value_parser = radius_of_shaft, allow_hyphen_values = true)]
     shaft: Option<f64>,
     /// Half the width of a flat face
-    #[arg(long, value_name = "16mm", value_parser = length)]
+    #[arg(long, value_name = "16mm", value_parser = positive_length, allow_hyphen_values = true)]
     half_face: Option<f64>,
     /// Largest Hertz pressure; needs `--force` and `--width`
     #[arg(long, value_name = "900MPa", value_parser = pressure, requires = "force", requires = "width")]
     hertz: Option<f64>,
     /// Normal force in the contact
-    #[arg(long, value_name = "800N", value_parser = force)]
+    #[arg(long, value_name = "800N", value_parser = force, allow_hyphen_values = true, requires = "hertz")]
     force: Option<f64>,
     /// Width of the contact
-    #[arg(long, value_name = "12mm", value_parser = length)]
+    #[arg(long, value_name = "12mm", value_parser = positive_length, allow_hyphen_values = true, requires = "hertz")]
     width: Option<f64>,
     /// Young's modulus of cam and follower
     #[arg(long, value_name = "210GPa", value_parser = pressure, default_value = "210GPa")]
     young: f64,
     /// Poisson's ratio of both
-    #[arg(long, value_name = "0.3", value_parser = number, default_value = "0.3")]
+    #[arg(long, value_name = "0.3", value_parser = poisson, default_value = "0.3")]
     poisson: f64,
     /// Print the polar radius of the pitch curve as a Rust constant of this name, and nothing else
     #[arg(long, value_name = "NAME", value_parser = constant_name)]
@@ -159,11 +165,32 @@ pub struct Arguments {
 }
 
 fn force(text: &str) -> Result<f64, String> {
-    in_unit(text, "N", "800N")
+    positive_in_unit(text, "N", "800N")
 }
 
 fn pressure(text: &str) -> Result<f64, String> {
-    in_unit(text, "Pa", "900MPa")
+    positive_in_unit(text, "Pa", "900MPa")
+}
+
+fn poisson(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        ratio if -1.0 < ratio && ratio <= 0.5 => Ok(ratio),
+        _ => Err(format!("`{text}` is no Poisson's ratio, which lies between -1 and 0.5")),
+    }
+}
+
+fn radius_of_shaft(text: &str) -> Result<f64, String> {
+    match length(text)? {
+        radius if radius >= 0.0 => Ok(radius),
+        _ => Err(format!("`{text}` is negative: write it as `9mm`")),
+    }
+}
+
+fn pressure_angle(text: &str) -> Result<f64, String> {
+    match positive_angle(text)? {
+        angle if angle < FRAC_PI_2 => Ok(angle),
+        _ => Err(format!("`{text}` is not below 90deg, which no pressure angle reaches")),
+    }
 }
 
 fn point(text: &str) -> Result<[f64; 2], String> {
@@ -223,9 +250,7 @@ impl Arguments {
             usage(format!("a desmodromic pair needs the rocker that closes\nhelp: say `{example}`"))
         })?;
         let closer = Closer::try_parse_from(text.split_whitespace()).map_err(|error| {
-            let text = error.to_string();
-            let line = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
-            usage(format!("`--closer`: {line}\nhelp: write `{example}`"))
+            usage(format!("`--closer`: {}\nhelp: write `{example}`", clap_reason(&error)))
         })?;
         let second = closer.dimensions.follower(self.follower, self.least).map_err(|error| match error {
             CommandError::Usage(why) => usage(format!("`--closer`: {why}")),

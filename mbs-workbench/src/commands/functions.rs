@@ -13,6 +13,7 @@ use mbs_runtime::driver::{End, SMOOTH};
 use mbs_runtime::{Function, Interval, Scalar};
 
 use super::CommandError;
+use super::given_file::unreadable;
 use super::law_options::{self, is_law, usage};
 use crate::cams::lift::Lift;
 use crate::mismatch::nearest;
@@ -192,6 +193,9 @@ fn made(declared: &DeclaredFunction, given: &[(String, String)]) -> Result<Given
     };
     if order < usize::from(declared.continuity) {
         let cure = match (&form, declared.period) {
+            (Form::Law(_), _) if OF_LAWS < usize::from(declared.continuity) => {
+                "laws have three at most; give a table of it, which has four over a whole period"
+            }
             (Form::Law(_), _) => "take a law with more, as `4567`, or a table of it",
             (Form::Table(_), Some(_)) => "a periodic table has four; declare no more",
             (Form::Table(_), None) => {
@@ -244,7 +248,7 @@ fn table(declared: &DeclaredFunction, form: &str) -> Result<(Form, String), Comm
                 law_options::laws()
             ),
         };
-        usage(format!("`{OPTION} {name}=…`: {path} cannot be read: {error}\nhelp: {help}"))
+        usage(format!("`{OPTION} {name}=…`: {path} {}", unreadable(Path::new(path), &error, &help)))
     })?;
     let mut points = read(&bytes, columns.as_ref()).map_err(|mut fault| {
         if fault.message == UNITS_UNKNOWN {

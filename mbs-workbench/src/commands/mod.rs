@@ -22,6 +22,7 @@ mod effects_words;
 pub mod expand;
 pub mod fmt;
 pub mod functions;
+mod given_file;
 pub mod hard_case_list;
 pub mod hard_cases;
 pub mod latex;

@@ -10,11 +10,13 @@ use super::CommandError;
 use super::assignment::{Assignment, assignment};
 use super::chosen::{finite, write_file};
 use super::document::Output;
-use super::law_options;
+use super::law_options::{self, in_unit};
+use super::report_files::require_writable;
 use crate::card::Card;
 use crate::catalogue::Catalogue;
+use crate::mismatch::nearest;
 use crate::output::origin::Origin;
-use crate::study::{Report, Study, Values, page};
+use crate::study::{Range, Report, Study, Values, page};
 use crate::target_directory::target_directory;
 
 #[derive(Args)]
@@ -22,7 +24,7 @@ pub struct Arguments {
     /// Mechanism whose study is run [default: the studies are listed]
     name: Option<String>,
     /// Speed of the study in revolutions a minute: its parameter `speed`
-    #[arg(long, value_name = "RPM", value_parser = finite)]
+    #[arg(long, value_name = "RPM", value_parser = revolutions, allow_hyphen_values = true)]
     speed: Option<f64>,
     /// Set a parameter of the study, in its unit or with a unit of its own
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
@@ -33,6 +35,16 @@ pub struct Arguments {
     /// Folder of the page [default: mbs/study/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+}
+
+/// Revolutions a minute: a number, or a speed with its unit.
+fn revolutions(text: &str) -> Result<f64, String> {
+    finite(text).or_else(|why| {
+        let speed = in_unit(text, "rad/s", "9000rpm");
+        speed.map(|speed| speed * 30.0 / core::f64::consts::PI).map_err(|_| {
+            format!("{why}: write revolutions a minute, as `9000`, or a speed with its unit, as `9000rpm`")
+        })
+    })
 }
 
 /// Runs a study: prints its tables and writes its page.
@@ -57,12 +69,22 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let mut said = None;
     if let Some(law) = &arguments.law {
         if !study.takes_law {
-            return Err(CommandError::Usage(format!("the study of `{name}` has no lift law")));
+            let help = "leave out `--law`";
+            return Err(CommandError::Usage(format!("the study of `{name}` has no lift law\nhelp: {help}")));
         }
-        let given = law_options::written(law)?;
+        let given = law_options::written(law).map_err(|error| match error {
+            CommandError::Usage(why) => CommandError::Usage(format!("`--law`: {why}")),
+            CommandError::Failed(why) => CommandError::Failed(format!("`--law`: {why}")),
+            other => other,
+        })?;
         said = Some(format!(" Lift law: {}.", given.table.unwrap_or_else(|| law.clone())));
         values.law = Some(given.lift);
     }
+    let directory = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| target_directory().join("mbs").join("study").join(card.file_name()));
+    require_writable(&directory)?;
     let mut report = (study.run)(&values, &mut |step| {
         // For a reader who waits.
         if std::io::stderr().is_terminal() {
@@ -72,10 +94,6 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     .map_err(|error| CommandError::Failed(error.to_string()))?;
     report.sentence.extend(said);
     let origin = Origin::of_text(&card.name(), card.equations().source());
-    let directory = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| target_directory().join("mbs").join("study").join(card.file_name()));
     let path = directory.join("study.html");
     write_file(&path, &page::html(&report, &command(arguments, name), &origin.line()))?;
     out.put_text(&origin, &report.title, None);
@@ -94,12 +112,16 @@ fn list(catalogue: &Catalogue, out: &mut Output) -> Result<(), CommandError> {
         let parameters: Vec<_> = study
             .parameters
             .iter()
-            .map(|one| json!({ "name": one.name, "unit": one.unit, "value": one.value, "about": one.about }))
+            .map(|one| json!({ "name": one.name, "unit": one.unit, "value": one.value, "range": one.range.to_string(), "about": one.about }))
             .collect();
         out.push("studies", json!({ "name": name, "about": study.about, "parameters": parameters }));
         writeln!(out, "mbs study {}: {}", name.split(':').next().unwrap_or(&name), study.about)?;
         for one in study.parameters {
-            writeln!(out, "  {:<12} {} {}, {}", one.name, one.value, one.unit, one.about)?;
+            let range = match one.range {
+                Range::Any | Range::Sign => String::new(),
+                range => format!(" ({range})"),
+            };
+            writeln!(out, "  {:<15}{:<18}{}{range}", one.name, one.written(one.value), one.about)?;
         }
     }
     Ok(())
@@ -110,10 +132,21 @@ fn found<'a>(catalogue: &Catalogue<'a>, name: &str) -> Result<(&'a Card, &'stati
     let of_text = |card: &&Card| card.name().split(':').next() == Some(name) || card.name() == name;
     let own = catalogue.cards.iter().filter(of_text).find_map(|card| Some((card, card.study?)));
     own.ok_or_else(|| {
-        let own = catalogue.cards.iter().filter(|card| card.study.is_some());
+        let text = |card: &Card| card.name().split(':').next().unwrap_or_default().to_string();
         let known: Vec<String> =
-            own.map(|card| card.name().split(':').next().unwrap_or_default().to_string()).collect();
-        CommandError::Usage(format!("`{name}` brings no study; there are those of {}", known.join(", ")))
+            catalogue.cards.iter().filter(|card| card.study.is_some()).map(text).collect();
+        if known.is_empty() {
+            let help = "a card brings one by `card!(…).studied_by(&STUDY)`";
+            return CommandError::Usage(format!("no mechanism brings a study\nhelp: {help}"));
+        }
+        let what = match catalogue.cards.iter().any(|card| of_text(&card)) {
+            true => format!("`{name}` brings no study"),
+            false => format!("there is no study `{name}`"),
+        };
+        let near = nearest(name, known.iter().map(String::as_str));
+        let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        let list = "`mbs study` without a name lists them with their parameters";
+        CommandError::Usage(format!("{what}{near}\nknown: {}\nhelp: {list}", known.join(", ")))
     })
 }
 

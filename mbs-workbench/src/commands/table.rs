@@ -17,6 +17,7 @@ use serde_json::json;
 use super::CommandError;
 use super::chosen::{finite, require_named, svg_file, write_file};
 use super::document::Output;
+use super::given_file::unreadable;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -76,7 +77,8 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
         return Ok(out.write_all(text.as_bytes())?);
     };
     let named = |message: String| CommandError::Failed(format!("{}: {message}", file.display()));
-    let bytes = fs::read(file).map_err(|error| named(format!("cannot be read: {error}")))?;
+    let help = "name a CSV file of two columns; `mbs table` without a file prints a sample";
+    let bytes = fs::read(file).map_err(|error| named(unreadable(file, &error, help)))?;
     let faulty = |fault: ReadFault| named(fault.to_string());
     let mut points = read(&bytes, arguments.columns.as_ref()).map_err(faulty)?;
     let kind = kind(arguments, &points)?;

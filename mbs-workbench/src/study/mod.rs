@@ -36,14 +36,74 @@ pub struct Parameter {
     pub unit: &'static str,
     /// Default in this unit.
     pub value: f64,
+    /// Values that it may have.
+    pub range: Range,
     /// Meaning.
     pub about: &'static str,
+}
+
+impl Parameter {
+    /// A value in six digits with the unit.
+    pub fn written(&self, value: f64) -> String {
+        let shown = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
+        let is_short = shown == 0.0 || (1e-4..1e6).contains(&shown.abs());
+        let number = if is_short { shown.to_string() } else { format!("{shown:e}") };
+        if self.unit == "1" { number } else { format!("{number} {}", self.unit) }
+    }
+}
+
+/// Values that a parameter may have; not a finite number is none of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// Every number.
+    Any,
+    /// Above 0.
+    Positive,
+    /// 0 and above.
+    NotNegative,
+    /// Between both, these included.
+    Within(f64, f64),
+    /// A whole number between both, these included.
+    Whole(u32, u32),
+    /// 1 or −1.
+    Sign,
+}
+
+impl Range {
+    /// `true` if `value` is one of them.
+    pub fn has(self, value: f64) -> bool {
+        let is_whole = value.fract() == 0.0;
+        value.is_finite()
+            && match self {
+                Range::Any => true,
+                Range::Positive => value > 0.0,
+                Range::NotNegative => value >= 0.0,
+                Range::Within(least, most) => (least..=most).contains(&value),
+                Range::Whole(least, most) => {
+                    is_whole && (f64::from(least)..=f64::from(most)).contains(&value)
+                }
+                Range::Sign => value.abs() == 1.0,
+            }
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Range::Any => write!(f, "a finite number"),
+            Range::Positive => write!(f, "above 0"),
+            Range::NotNegative => write!(f, "0 or above"),
+            Range::Within(least, most) => write!(f, "between {least} and {most}"),
+            Range::Whole(least, most) => write!(f, "a whole number between {least} and {most}"),
+            Range::Sign => write!(f, "1 or -1"),
+        }
+    }
 }
 
 /// Values of all parameters of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
-    numbers: Vec<(&'static str, f64)>,
+    numbers: Vec<(Parameter, f64)>,
     /// Lift law in place of the study's own.
     pub law: Option<Lift>,
 }
@@ -51,35 +111,37 @@ pub struct Values {
 impl Values {
     /// Defaults of `study`.
     pub fn of(study: &Study) -> Self {
-        let numbers = study.parameters.iter().map(|parameter| (parameter.name, parameter.value)).collect();
+        let numbers = study.parameters.iter().map(|parameter| (*parameter, parameter.value)).collect();
         Values { numbers, law: None }
     }
 
     /// Sets a value in the unit of its parameter.
     ///
     /// # Errors
-    /// [`StudyError`] with the known names, and for a number that is not finite.
+    /// [`StudyError`] with the nearest and all known names, and for a value that the parameter may not have.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), StudyError> {
-        if !value.is_finite() {
-            return Err(StudyError(format!("`{name}` is not a finite number")));
+        let Some(at) = self.numbers.iter().position(|(known, _)| known.name == name) else {
+            let known: Vec<&str> = self.numbers.iter().map(|(known, _)| known.name).collect();
+            let near = nearest(name, known.iter().copied());
+            let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+            let message = format!("the study has no parameter `{name}`{hint}\nknown: {}", known.join(", "));
+            return Err(StudyError(message));
+        };
+        let (parameter, number) = &mut self.numbers[at];
+        let Parameter { range, about, value: usual, .. } = *parameter;
+        if !range.has(value) {
+            let [given, usual] = [value, usual].map(|value| parameter.written(value));
+            let message =
+                format!("`{name}`, {about}, is {given}: it must be {range}\nhelp: its default is {usual}");
+            return Err(StudyError(message));
         }
-        let known = || self.numbers.iter().map(|(name, _)| *name).collect::<Vec<_>>();
-        match self.numbers.iter().position(|(known, _)| *known == name) {
-            Some(at) => self.numbers[at].1 = value,
-            None => {
-                let near = nearest(name, known());
-                let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-                let message =
-                    format!("the study has no parameter `{name}`{hint}\nknown: {}", known().join(", "));
-                return Err(StudyError(message));
-            }
-        }
+        *number = value;
         Ok(())
     }
 
     /// Value of a parameter; NaN of one that the study does not have.
     pub fn get(&self, name: &str) -> f64 {
-        self.numbers.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
+        self.numbers.iter().find(|(known, _)| known.name == name).map_or(f64::NAN, |(_, value)| *value)
     }
 }
 
@@ -172,7 +234,22 @@ mod tests {
 
     const STUDY: Study = Study {
         about: "A study of a test.",
-        parameters: &[Parameter { name: "speed", unit: "rad/s", value: 2.0, about: "of the cam" }],
+        parameters: &[
+            Parameter {
+                name: "speed",
+                unit: "rad/s",
+                value: 2.0,
+                range: Range::Positive,
+                about: "speed of the cam",
+            },
+            Parameter {
+                name: "turns",
+                unit: "1",
+                value: 3.0,
+                range: Range::Whole(1, 9),
+                about: "turns from rest",
+            },
+        ],
         takes_law: false,
         run: |_, _| Ok(Report::default()),
     };
@@ -185,8 +262,34 @@ mod tests {
         assert_eq!(values.get("speed"), 3.0);
         let refused = values.set("sped", 1.0).expect_err("no parameter").to_string();
         assert!(refused.contains("did you mean `speed`?") && refused.contains("known: speed"), "{refused}");
-        assert!(values.set("speed", f64::NAN).is_err() && values.get("speed") == 3.0);
         assert!(values.get("other").is_nan());
+    }
+
+    #[test]
+    fn a_value_out_of_its_range_is_refused_with_range_and_default() {
+        let mut values = Values::of(&STUDY);
+        for (name, value, expected) in [
+            (
+                "speed",
+                f64::NAN,
+                "`speed`, speed of the cam, is NaN rad/s: it must be above 0\nhelp: its default is 2 rad/s",
+            ),
+            ("speed", 0.0, "is 0 rad/s: it must be above 0"),
+            ("turns", 2.5, "is 2.5: it must be a whole number between 1 and 9"),
+            ("turns", 1e9, "is 1e9: it must be"),
+        ] {
+            let refused = values.set(name, value).expect_err("out of range").to_string();
+            assert!(refused.contains(expected), "{refused}");
+        }
+        assert_eq!(values, Values::of(&STUDY));
+        for (range, inside, outside) in [
+            (Range::Any, -1e300, f64::INFINITY),
+            (Range::NotNegative, 0.0, -1e-9),
+            (Range::Within(0.0, 0.9), 0.9, 1.0),
+            (Range::Sign, -1.0, 0.5),
+        ] {
+            assert!(range.has(inside) && !range.has(outside), "{range:?}");
+        }
     }
 
     #[test]

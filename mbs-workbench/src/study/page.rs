@@ -39,7 +39,12 @@ pub fn html(report: &Report, command: &str, origin: &str) -> String {
         escaped(origin),
         include_str!("page.css"),
         escaped(&report.sentence),
-        escaped(command),
+        // A word is broken where it does not fit alone.
+        command
+            .split(' ')
+            .map(|word| format!("<span>{}</span>", escaped(word)))
+            .collect::<Vec<_>>()
+            .join(" "),
         escaped(origin),
         title = escaped(&report.title),
     )
@@ -131,7 +136,14 @@ mod tests {
             assert!(page.contains(part), "{part}");
         }
         assert_eq!(page.matches("<a href=\"#step1\">").count(), 1 + 2);
-        for part in ["1. Synthesis", "2. Motion", "1 &lt; 2", "<svg></svg>", "mbs study a", "#step2"] {
+        for part in [
+            "1. Synthesis",
+            "2. Motion",
+            "1 &lt; 2",
+            "<svg></svg>",
+            "<span>study</span> <span>a</span>",
+            "#step2",
+        ] {
             assert!(page.contains(part), "{part}");
         }
         assert!(!page.contains("http") && !page.contains("<script"));

@@ -5,12 +5,34 @@ use core::fmt::Write;
 use super::Picture;
 use crate::output::page::escaped;
 
-const WIDTH: f64 = 680.0;
-const HEIGHT: f64 = 330.0;
-const LEFT: f64 = 74.0;
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 30.0;
 const BOTTOM: f64 = 44.0;
+/// Height of a row of the legend.
+const ROW: f64 = 18.0;
+/// Width of a letter of 12 units.
+const LETTER: f64 = 6.6;
+
+/// A drawing for one width of the reader's screen. The page shows one of both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Frame {
+    /// Class in the page's style.
+    class: &'static str,
+    width: f64,
+    height: f64,
+    /// Room for the numbers of the axis.
+    left: f64,
+    /// Angle between two lines of the grid (deg).
+    step: f64,
+}
+
+const WIDE: Frame = Frame { class: "wide", width: 680.0, height: 330.0, left: 74.0, step: 45.0 };
+const NARROW: Frame = Frame { class: "narrow", width: 350.0, height: 250.0, left: 52.0, step: 90.0 };
+
+/// The drawing for both widths.
+fn for_both(drawn: impl Fn(Frame) -> String) -> String {
+    [WIDE, NARROW].map(drawn).concat()
+}
 
 /// Curves over one axis.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,6 +51,8 @@ pub struct Plot {
     pub marks: Option<(String, Vec<[f64; 2]>)>,
     /// Largest magnitude of y that is shown, where a peak would flatten all else.
     pub most: Option<f64>,
+    /// `true` if both axes are logarithmic; all values are then above 0.
+    pub is_logarithmic: bool,
 }
 
 /// A curve of a plot.
@@ -71,17 +95,23 @@ pub struct Timeline {
 impl Timeline {
     /// The rows as a picture.
     pub fn picture(&self) -> Picture {
+        Picture { caption: self.caption.clone(), svg: for_both(|frame| self.drawn(frame)) }
+    }
+
+    fn drawn(&self, frame: Frame) -> String {
         const ROW: f64 = 30.0;
-        const NAMES: f64 = 150.0;
+        let Frame { class, width, .. } = frame;
+        let longest = self.rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+        let names = 14.0 + LETTER * longest as f64;
         let [low, high] = self.ends;
-        let x = |value: f64| NAMES + (value - low) / (high - low) * (WIDTH - NAMES - RIGHT);
+        let x = |value: f64| names + (value - low) / (high - low) * (width - names - RIGHT);
         let height = ROW * self.rows.len() as f64 + 40.0;
         let bottom = height - 24.0;
         let mut svg = format!(
-            "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"{}\">\n",
+            "<svg class=\"{class}\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\">\n",
             escaped(&self.caption)
         );
-        for value in eighths(low, high) {
+        for value in parts_of_a_turn([low, high], frame) {
             let at = x(value);
             let _ = writeln!(
                 svg,
@@ -95,7 +125,7 @@ impl Timeline {
             let _ = writeln!(
                 svg,
                 "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-                NAMES - 8.0,
+                names - 8.0,
                 top + 15.0,
                 escaped(name)
             );
@@ -112,10 +142,10 @@ impl Timeline {
         let _ = writeln!(
             svg,
             "<text x=\"{:.1}\" y=\"12\" text-anchor=\"end\">{}</text></svg>",
-            WIDTH - RIGHT,
+            width - RIGHT,
             escaped(&self.x)
         );
-        Picture { caption: self.caption.clone(), svg }
+        svg
     }
 }
 
@@ -130,12 +160,27 @@ fn ticks(low: f64, high: f64) -> Vec<f64> {
     (0..count).map(|k| (first + k) as f64 * step).collect()
 }
 
-/// Eighths of a turn between both ends (deg); of a shorter range round numbers.
-fn eighths(low: f64, high: f64) -> Vec<f64> {
-    let step = 45.0;
+/// Equal parts of a turn between both ends (deg); of a shorter range round numbers.
+fn parts_of_a_turn([low, high]: [f64; 2], Frame { step, .. }: Frame) -> Vec<f64> {
     let [first, last] = [(low / step).ceil() as i64, (high / step).floor() as i64];
-    let is_turn = (4..=9).contains(&(last - first));
+    let is_turn = (4..=9).contains(&(((high - low) / 45.0).round() as i64));
     if is_turn { (first..=last).map(|k| k as f64 * step).collect() } else { ticks(low, high) }
+}
+
+/// Logarithms of round numbers between those of both ends, with the numbers: powers of 10 or, of a short range, 1, 2 and 5 times these.
+fn decades(low: f64, high: f64) -> Vec<(f64, String)> {
+    let [first, last] = [low.floor() as i32, high.ceil() as i32];
+    let factors: &[f64] = if high - low < 2.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let thinned = ((last - first) / 6).max(1) as usize;
+    (first..=last)
+        .step_by(thinned)
+        .flat_map(|power| factors.iter().map(move |factor| factor * 10.0_f64.powi(power)))
+        .filter(|value| (low..=high).contains(&value.log10()))
+        .map(|value| {
+            let is_short = (1e-3..1e6).contains(&value);
+            (value.log10(), if is_short { written(value) } else { format!("{value:.0e}") })
+        })
+        .collect()
 }
 
 fn written(value: f64) -> String {
@@ -163,45 +208,67 @@ fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
 impl Plot {
     /// The plot as a picture.
     pub fn picture(&self) -> Picture {
+        Picture { caption: self.caption.clone(), svg: for_both(|frame| self.drawn(frame)) }
+    }
+
+    /// A place on the paper before it is scaled.
+    fn scale(&self, value: f64) -> f64 {
+        if self.is_logarithmic { value.log10() } else { value }
+    }
+
+    /// Round numbers of an axis with their names.
+    fn round(&self, low: f64, high: f64) -> Vec<(f64, String)> {
+        match self.is_logarithmic {
+            true => decades(low, high),
+            false => ticks(low, high).into_iter().map(|value| (value, written(value))).collect(),
+        }
+    }
+
+    fn drawn(&self, frame: Frame) -> String {
+        let Frame { class, width, left: margin, .. } = frame;
+        let (keys, rows) = self.keys(frame);
+        let height = frame.height + ROW * (rows - 1) as f64;
+        let bottom = frame.height - BOTTOM;
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
         let areas = || self.bands.iter().flat_map(|(_, points)| points);
-        let [left, right] = ends(points().map(|p| p[0]).chain(areas().map(|p| p[0])));
-        let values = points().map(|p| p[1]).chain(areas().flat_map(|p| [p[1], p[2]]));
+        let scale = |value| self.scale(value);
+        let [left, right] = ends(points().map(|p| scale(p[0])).chain(areas().map(|p| scale(p[0]))));
+        let values = points().map(|p| p[1]).chain(areas().flat_map(|p| [p[1], p[2]])).map(scale);
         let [mut low, mut high] = ends(values);
         if let Some(most) = self.most {
             (low, high) = (low.max(-most), high.min(most));
         }
         let room = 0.04 * (high - low);
         (low, high) = (low - room, high + room);
-        let x = |value: f64| LEFT + (value - left) / (right - left) * (WIDTH - LEFT - RIGHT);
+        let x = |value: f64| margin + (value - left) / (right - left) * (width - margin - RIGHT);
         let y = |value: f64| {
             let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
-            HEIGHT - BOTTOM - share * (HEIGHT - TOP - BOTTOM)
+            bottom - share * (bottom - TOP)
         };
         let mut svg = format!(
-            "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">\n",
+            "<svg class=\"{class}\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\">\n",
             escaped(&self.caption)
         );
-        let bottom = HEIGHT - BOTTOM;
-        for value in ticks(low, high) {
+        for (value, name) in self.round(low, high) {
             let at = y(value);
             let _ = writeln!(
                 svg,
-                "<path class=\"grid\" d=\"M{LEFT} {at:.1}H{:.1}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-                WIDTH - RIGHT,
-                LEFT - 6.0,
-                at + 4.0,
-                written(value)
+                "<path class=\"grid\" d=\"M{margin} {at:.1}H{:.1}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{name}</text>",
+                width - RIGHT,
+                margin - 6.0,
+                at + 4.0
             );
         }
-        let along = if self.x.ends_with("(deg)") { eighths(left, right) } else { ticks(left, right) };
-        for value in along {
+        let along = match self.x.ends_with("(deg)") {
+            true => parts_of_a_turn([left, right], frame).into_iter().map(|at| (at, written(at))).collect(),
+            false => self.round(left, right),
+        };
+        for (value, name) in along {
             let at = x(value);
             let _ = writeln!(
                 svg,
-                "<path class=\"grid\" d=\"M{at:.1} {TOP}V{bottom:.1}\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
-                bottom + 17.0,
-                written(value)
+                "<path class=\"grid\" d=\"M{at:.1} {TOP}V{bottom:.1}\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{name}</text>",
+                bottom + 17.0
             );
         }
         if let Some((_, spans)) = &self.marks {
@@ -217,7 +284,8 @@ impl Plot {
         }
         let path = |points: &mut dyn Iterator<Item = [f64; 2]>| {
             let mut text = String::new();
-            for [a, b] in points.filter(|[a, b]| a.is_finite() && b.is_finite()) {
+            let scaled = points.map(|point| point.map(scale));
+            for [a, b] in scaled.filter(|[a, b]| a.is_finite() && b.is_finite()) {
                 let _ = write!(text, "{}{:.1} {:.1}", if text.is_empty() { 'M' } else { 'L' }, x(a), y(b));
             }
             text
@@ -232,39 +300,45 @@ impl Plot {
             let line = path(&mut curve.points.iter().copied());
             let _ = writeln!(svg, "<path class=\"curve line{}{dashes}\" d=\"{line}\"/>", index % 6);
         }
-        self.legend(&mut svg);
+        svg += &keys;
         let _ = writeln!(
             svg,
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text><text x=\"4\" y=\"14\">{}</text></svg>",
-            WIDTH - RIGHT,
+            width - RIGHT,
             14.0,
             escaped(&self.x),
             escaped(&self.y)
         );
-        Picture { caption: self.caption.clone(), svg }
+        svg
     }
 
-    /// Names of curves, bands and marks in a row below the axis.
-    fn legend(&self, svg: &mut String) {
+    /// Names of curves, bands and marks below the axis, and the number of rows that they take.
+    fn keys(&self, Frame { width, height, left, .. }: Frame) -> (String, usize) {
         let dashes = |curve: &Curve| if curve.is_dashed { " dashed" } else { "" };
         let curves = self.curves.iter().enumerate().map(|(index, curve)| {
             (format!("curve line{}{}", index % 6, dashes(curve)), curve.label.as_str())
         });
         let bands = self.bands.iter().map(|(label, _)| ("band".to_string(), label.as_str()));
         let marks = self.marks.iter().map(|(label, _)| ("mark".to_string(), label.as_str()));
-        let mut at = LEFT;
+        let (mut at, mut rows, mut svg) = (left, 1, String::new());
         for (class, label) in curves.chain(bands).chain(marks) {
+            let long = 20.0 + LETTER * label.chars().count() as f64;
+            if at > left && at + long > width {
+                (at, rows) = (left, rows + 1);
+            }
+            let bottom = height + ROW * (rows - 1) as f64;
             let shape = if class.starts_with("curve") { "h16" } else { "v-5h16v10h-16Z" };
             let _ = writeln!(
                 svg,
                 "<path class=\"{class}\" d=\"M{at:.1} {:.1}{shape}\"/><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-                HEIGHT - 12.0,
+                bottom - 12.0,
                 at + 20.0,
-                HEIGHT - 8.0,
+                bottom - 8.0,
                 escaped(label)
             );
-            at += 34.0 + 6.6 * label.chars().count() as f64;
+            at += 14.0 + long;
         }
+        (svg, rows)
     }
 }
 
@@ -276,8 +350,9 @@ mod tests {
     fn ticks_are_round_and_within_the_axis() {
         assert_eq!(ticks(-180.0, 180.0), [-100.0, 0.0, 100.0]);
         assert_eq!(ticks(0.0, 1.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
-        assert_eq!(eighths(-179.75, 180.0).len(), 8);
-        assert_eq!(eighths(0.0, 10.0), ticks(0.0, 10.0));
+        assert_eq!(parts_of_a_turn([-179.75, 180.0], WIDE).len(), 8);
+        assert_eq!(parts_of_a_turn([-180.0, 180.0], NARROW), [-180.0, -90.0, 0.0, 90.0, 180.0]);
+        assert_eq!(parts_of_a_turn([0.0, 10.0], WIDE), ticks(0.0, 10.0));
         for [low, high] in [[1e-9, 3e-9], [-7e5, 2e4], [12.0, 12.5]] {
             let found = ticks(low, high);
             assert!((2..=7).contains(&found.len()), "{found:?}");
@@ -293,10 +368,11 @@ mod tests {
     fn intervals_are_bars_to_scale() {
         let rows = vec![("seat".to_string(), vec![[-180.0, 0.0]]), ("cam".to_string(), Vec::new())];
         let line = Timeline { ends: [-180.0, 180.0], rows, ..Timeline::default() };
-        let svg = line.picture().svg;
-        // Half of the 518 units between the names and the margin.
+        let svg = line.drawn(WIDE);
+        // Half of the 627.6 units between the names and the margin.
         assert_eq!(svg.matches("class=\"bar").count(), 1);
-        assert!(svg.contains("x=\"150.0\" y=\"20.0\" width=\"259.0\""), "{svg}");
+        assert!(svg.contains("x=\"40.4\" y=\"20.0\" width=\"313.8\""), "{svg}");
+        assert!(line.picture().svg.contains("class=\"narrow\""));
     }
 
     #[test]
@@ -309,11 +385,23 @@ mod tests {
             bands: vec![("all".to_string(), vec![[0.0, -1.0, 1.0], [2.0, -2.0, 2.0]])],
             ..Plot::default()
         };
-        let svg = plot.picture().svg;
+        let svg = plot.drawn(WIDE);
         assert!(!svg.contains("NaN") && svg.contains("a&lt;b") && svg.contains("x &amp; y"), "{svg}");
         assert_eq!(svg.matches("class=\"mark\"").count(), 2);
         assert_eq!(svg.matches("class=\"band\"").count(), 2);
         // A plot without a point has axes.
         assert!(!Plot::default().picture().svg.contains("inf"));
+    }
+    #[test]
+    fn logarithmic_axes_name_the_numbers_and_legends_wrap() {
+        let names =
+            |low: f64, high: f64| decades(low, high).into_iter().map(|(_, name)| name).collect::<Vec<_>>();
+        assert_eq!(names(4.2, 4.8), ["20000", "50000"]);
+        assert_eq!(names(-12.8, -9.4), ["1e-12", "1e-11", "1e-10"]);
+        let long = |name: &str| Curve::new(name, &[1.0, 1e3], &[1e-6, 1e-2]);
+        let curves = vec![long("a name of thirty letters, about"), long("and another one that is as long")];
+        let plot = Plot { curves, is_logarithmic: true, ..Plot::default() };
+        assert_eq!([WIDE, NARROW].map(|frame| plot.keys(frame).1), [1, 2]);
+        assert!(plot.drawn(NARROW).contains("0 0 350 268"));
     }
 }

@@ -261,6 +261,14 @@ fn value(row: &[String], column: &(usize, Unit), line: usize, separator: char) -
         Some(number) if (number * unit.factor).is_finite() => Ok(number * unit.factor),
         Some(_) => fault(format!("`{cell}` is not a finite number"), "remove the line, or measure it again"),
         None if cell.is_empty() => fault("the cell is empty".to_string(), "remove the line, or fill it in"),
+        None if cell.split_whitespace().count() > 1
+            && cell.split_whitespace().all(|word| number(word, separator).is_some()) =>
+        {
+            fault(
+                format!("`{cell}` is not a number"),
+                "separate the columns by a comma, a semicolon or a tab",
+            )
+        }
         None if separator == ',' || !cell.contains(['.', ',']) => fault(
             format!("`{cell}` is not a number"),
             "write numbers as 1.5 or 1e-3, comments behind a `#` at the beginning of a line",

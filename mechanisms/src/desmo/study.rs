@@ -8,7 +8,7 @@ use core::f64::consts::PI;
 
 use mbs_workbench::cams::follower::{Cam, Direction};
 use mbs_workbench::cams::lift::Lift;
-use mbs_workbench::study::{Parameter, Report, Study, StudyError, Values};
+use mbs_workbench::study::{Parameter, Range, Report, Study, StudyError, Values};
 
 use super::Design;
 use super::design::Curve;
@@ -18,40 +18,65 @@ use super::motion::{Ordinary, Turn, Valvetrain};
 pub const STUDY: Study = Study {
     about: "a desmodromic valvetrain from the lift law to the contact forces at two speeds",
     parameters: &[
-        parameter("speed", "rad/s", 9000.0 * PI / 30.0, "speed of the cam"),
-        parameter("slow", "rad/s", 5000.0 * PI / 30.0, "the other speed"),
-        parameter("lift", "m", 0.011, "lift of the valve; a `--law` has its own"),
+        parameter("speed", "rad/s", 9000.0 * PI / 30.0, Range::Positive, "speed of the cam"),
+        parameter("slow", "rad/s", 5000.0 * PI / 30.0, Range::Positive, "the other speed"),
+        parameter("lift", "m", 0.011, Range::Positive, "lift of the valve; a `--law` has its own"),
         parameter(
             "duration",
             "rad",
             160.0 * PI / 180.0,
+            Range::Positive,
             "cam angle from seat to seat; a `--law` has its own",
         ),
-        parameter("sense", "1", 1.0, "1 for cams that turn counter-clockwise, else -1"),
-        parameter("open_play", "m", 1e-4, "clearance between opener and valve"),
-        parameter("close_play", "m", 3e-5, "clearance between closer and valve"),
-        parameter("stiffness", "N/m^1.5", 5e10, "K of the contacts"),
-        parameter("damping", "s/m", 1.5, "D of the contacts"),
-        parameter("valve_mass", "kg", 0.028, "mass of the valve"),
-        parameter("opener_inertia", "kg*m^2", 1.3e-5, "moment of inertia about the pivot"),
-        parameter("closer_inertia", "kg*m^2", 2.2e-5, "moment of inertia about the pivot"),
-        parameter("preload", "N*m", 1.2, "torque of the helper spring at lift 0"),
-        parameter("spring", "N/m", 35000.0, "stiffness of the valve spring of the ordinary valvetrain"),
-        parameter("spring_preload", "N", 250.0, "its force at lift 0"),
-        parameter("drag", "N*s/m", 2.0, "viscous friction of the guide"),
-        parameter("dry", "N", 3.0, "dry friction of the guide"),
-        parameter("swing", "rad", 0.0, "amplitude of a harmonic of the cam's angle"),
-        parameter("points", "1", 0.0, "points of the cams' tables; 0 for pitch curves in closed form"),
-        parameter("turns", "1", 3.0, "turns from rest; the last one is shown"),
-        parameter("runs", "1", 32.0, "perturbed runs of the envelope"),
-        parameter("spread", "1", 0.2, "half the width of the perturbations of K, D and clearances"),
+        parameter("sense", "1", 1.0, Range::Sign, "1 for cams that turn counter-clockwise, else -1"),
+        parameter("open_play", "m", 1e-4, Range::NotNegative, "clearance between opener and valve"),
+        parameter("close_play", "m", 3e-5, Range::NotNegative, "clearance between closer and valve"),
+        parameter("stiffness", "N/m^1.5", 5e10, Range::Positive, "K of the contacts"),
+        parameter("damping", "s/m", 1.5, Range::NotNegative, "D of the contacts"),
+        parameter("valve_mass", "kg", 0.028, Range::Positive, "mass of the valve"),
+        parameter("opener_inertia", "kg*m^2", 1.3e-5, Range::Positive, "moment of inertia about the pivot"),
+        parameter("closer_inertia", "kg*m^2", 2.2e-5, Range::Positive, "moment of inertia about the pivot"),
+        parameter("preload", "N*m", 1.2, Range::Any, "torque of the helper spring at lift 0"),
+        parameter(
+            "spring",
+            "N/m",
+            35000.0,
+            Range::NotNegative,
+            "stiffness of the valve spring of the ordinary valvetrain",
+        ),
+        parameter("spring_preload", "N", 250.0, Range::NotNegative, "its force at lift 0"),
+        parameter("drag", "N*s/m", 2.0, Range::NotNegative, "viscous friction of the guide"),
+        parameter("dry", "N", 3.0, Range::NotNegative, "dry friction of the guide"),
+        parameter("swing", "rad", 0.0, Range::Any, "amplitude of a harmonic of the cam's angle"),
+        parameter(
+            "points",
+            "1",
+            0.0,
+            Range::Whole(0, 100_000),
+            "points of the cams' tables; 0 for pitch curves in closed form",
+        ),
+        parameter("turns", "1", 3.0, Range::Whole(1, 1000), "turns from rest; the last one is shown"),
+        parameter("runs", "1", 32.0, Range::Whole(1, 10_000), "perturbed runs of the envelope"),
+        parameter(
+            "spread",
+            "1",
+            0.2,
+            Range::Within(0.0, 0.9),
+            "half the width of the perturbations of K, D and clearances",
+        ),
     ],
     takes_law: true,
     run: study,
 };
 
-const fn parameter(name: &'static str, unit: &'static str, value: f64, about: &'static str) -> Parameter {
-    Parameter { name, unit, value, about }
+const fn parameter(
+    name: &'static str,
+    unit: &'static str,
+    value: f64,
+    range: Range,
+    about: &'static str,
+) -> Parameter {
+    Parameter { name, unit, value, range, about }
 }
 
 /// Values of a study, both cams, and the valvetrain without speed.
@@ -97,11 +122,6 @@ impl<'a> Chain<'a> {
             sense if sense > 0.0 => Direction::CounterClockwise,
             _ => Direction::Clockwise,
         };
-        for name in ["speed", "slow", "turns", "runs", "duration"] {
-            if values.get(name) <= 0.0 {
-                return Err(StudyError(format!("`{name}` must be above 0")));
-            }
-        }
         let law = match &values.law {
             Some(law) => closed_half_a_turn_from_its_origin(law.clone())?,
             None => Design::law(values.get("lift"), values.get("duration")).map_err(failed)?,
@@ -112,7 +132,11 @@ impl<'a> Chain<'a> {
         match values.get("points") {
             0.0 => {}
             points if points >= 16.0 => curves = tables(&curves, points as u32)?,
-            _ => return Err(StudyError("`points` is 0 or at least 16".to_string())),
+            _ => {
+                return Err(StudyError(
+                    "`points` is 0 or at least 16\nhelp: 0 takes the pitch curves in closed form".to_string(),
+                ));
+            }
         }
         Ok(Chain { values, design, cams, curves })
     }

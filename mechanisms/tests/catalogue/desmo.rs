@@ -93,12 +93,15 @@ fn a_law_that_opens_the_valve_where_the_motion_begins_is_refused() {
 
 #[test]
 fn a_study_refuses_values_that_it_cannot_run_with() {
-    for (name, value, expected) in [
-        ("turns", 0.0, "`turns` must be above 0"),
-        ("points", 3.0, "`points` is 0 or at least 16"),
-        ("lift", -0.01, "lift"),
-        ("lift", 0.1, "does not reach the cam"),
-    ] {
+    for (name, value) in
+        [("turns", 0.0), ("turns", 1.5), ("lift", -0.01), ("valve_mass", 0.0), ("sense", 2.0)]
+    {
+        let refused = Values::of(&STUDY).set(name, value).expect_err("out of range").to_string();
+        assert!(refused.contains("it must be") && refused.contains("help: its default is"), "{refused}");
+    }
+    for (name, value, expected) in
+        [("points", 3.0, "`points` is 0 or at least 16"), ("lift", 0.1, "does not reach the cam")]
+    {
         let mut values = Values::of(&STUDY);
         values.set(name, value).expect("a parameter");
         let refused = (STUDY.run)(&values, &mut |_| ()).map(|_| ()).expect_err(name).to_string();

@@ -10,7 +10,12 @@ const short = (value) => value === null || value === undefined ? "∞" : String(
 const DEGREE = 180 / Math.PI;
 byId("title").textContent = DATA.title;
 byId("sentence").textContent = DATA.sentence;
-byId("command").textContent = DATA.command;
+/* A word of the command is broken where it does not fit alone. */
+DATA.command.split(" ").forEach((word) => {
+  const part = document.createElement("span");
+  part.textContent = word;
+  byId("command").append(part, " ");
+});
 
 /* Quantities with the factor from SI to what is shown. */
 const [lift, per] = DATA.by_angle ? [DEGREE, "°"] : [1000, "mm"];
@@ -86,9 +91,12 @@ for (const [name, unit, series, factor, limits = []] of CHARTS) {
   verdicts.filter((one) => limits.includes(one.name) && !one.kept).forEach((one, row) => {
     const at = x(one.angle * DEGREE);
     make("path", { class: "bad", d: `M${at} ${top}V${height - bottom}` }, svg);
-    const right = at > width * 0.6;
-    const word = make("text", { class: "word", x: at + (right ? -5 : 5), y: top + 12 + 14 * row, "text-anchor": right ? "end" : "start" }, svg);
-    word.textContent = `${isPair ? `${one.of}: ` : ""}${one.name} ${(one.angle * DEGREE).toFixed(1)}°`;
+    const name = `${isPair ? `${one.of}: ` : ""}${one.name} ${(one.angle * DEGREE).toFixed(1)}°`;
+    /* On the side with more room, within the picture. */
+    const long = 6.6 * name.length, isLate = at > width / 2;
+    const from = Math.max(isLate ? at - 5 - long : Math.min(at + 5, width - right - long), left + 2);
+    const word = make("text", { class: "word", x: from, y: top + 12 + 14 * row }, svg);
+    word.textContent = name;
   });
   const line = make("path", { class: "cursor" }, svg);
   cursors.push((k) => line.setAttribute("d", `M${x(degrees[k])} ${top}V${height - bottom}`));

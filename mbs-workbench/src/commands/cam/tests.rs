@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use clap::Parser;
 
+use super::super::law_options;
 use super::*;
 use crate::cams::follower::Side;
 use crate::cams::tests::solved_lift;
@@ -217,4 +218,61 @@ fn a_table_of_the_lift_is_named() {
     assert!(String::from_utf8(text).expect("UTF-8").contains(said));
     let page = fs::read_to_string(folder.join("cam.html")).expect("the page");
     assert!(page.contains(&format!("Lift law: {said}.")));
+}
+
+/// No option is left aside silently, and none takes a value that it cannot have.
+#[test]
+fn options_of_other_laws_and_values_out_of_range_are_refused_with_a_cure() {
+    let flat = "--follower flat --base 20mm";
+    for (law, expected) in [
+        (
+            "345 --lift 5mm --rise 90deg --duration 50deg",
+            "help: leave it out; this law has `--lift`, `--rise`",
+        ),
+        ("even:2,4 --lift 5mm --duration 90deg --knots 9", "an even-power law has `--lift`, `--duration`"),
+        ("lift.csv --lift 5mm", "`--lift` belongs to another law than `lift.csv`"),
+        ("cyclod --lift 5mm", "did you mean `cycloid`?"),
+        ("lft.csv", "lft.csv: cannot be read: there is no such file\nhelp: "),
+        ("345 --lift -5mm --rise 90deg", "`-5mm` is not above 0"),
+        ("345 --lift 5mm --rise 90deg --ramp -1mm,5deg", "`-1mm` is not above 0"),
+        ("345 --lift 5mm --rise 300deg", "help: rise, dwell and return together"),
+    ] {
+        let refused = parsed(&format!("{law} {flat}"), None).law().map(|_| ()).expect_err(law).to_string();
+        assert!(refused.contains(expected), "{law}: {refused}");
+    }
+    for (options, expected) in [
+        ("--base 0mm", "`0mm` is not above 0: write it as `12mm`"),
+        ("--base -5mm", "`-5mm` is not above 0"),
+        ("--base 20mm --pressure-angle 95deg", "not below 90deg"),
+        ("--base 20mm --shaft -1mm", "`-1mm` is negative"),
+        ("--base 20mm --hertz 1GPa --width 1mm --force 0N", "`0N` is not above 0"),
+        ("--base 20mm --force 5N", "--hertz"),
+        ("--base 20mm --measured --rise 90deg", "cannot be used with"),
+    ] {
+        let words = format!("345 --lift 5mm --follower flat {options}");
+        let refused = Line::try_parse_from(words.split_whitespace()).map(|_| ()).expect_err(options);
+        assert!(refused.to_string().contains(expected), "{options}: {refused}");
+    }
+}
+
+/// The words of harmonics: mean, then cosine and sine of each.
+#[test]
+fn harmonics_of_the_command_are_their_sum() {
+    let law = law_options::written("harmonics:4mm, -4mm 0.5mm, 0.2mm").expect("a law").lift;
+    for k in 0..24 {
+        let theta = TAU * f64::from(k) / 24.0;
+        let expected = 4.0 - 4.0 * theta.cos() + 0.5 * theta.sin() + 0.2 * (2.0 * theta).cos();
+        assert!((1e3 * law.jet(theta)[0] - expected).abs() < 1e-14, "{theta}");
+    }
+    for (text, expected) in [
+        ("harmonics:4mm", "one amplitude is needed"),
+        ("harmonics:4mm, 1", "a unit is needed"),
+        ("harmonics:4mm, 0mm", "moves nothing"),
+        ("harmonics:4mm, 1mm 2mm 3mm", "is no cosine and sine"),
+        ("", "no law is written"),
+        ("4567 --lift 8mm --ris 75deg", "'--rise'"),
+    ] {
+        let refused = law_options::written(text).map(|_| ()).expect_err(text).to_string();
+        assert!(refused.contains(expected), "{text}: {refused}");
+    }
 }

@@ -97,8 +97,11 @@ pub fn kinematics(chain: &Chain) -> Result<Section, StudyError> {
     let mut held = |name: String, curves: &[Curve; 2]| -> Result<Misfit, StudyError> {
         let misfit = Misfit::of(&chain.design, curves, 1440, OFFSET).map_err(failed)?;
         let [position, rate, acceleration] = misfit.largest();
-        let figures = [position, rate, acceleration, acceleration * speed * speed];
-        let [position, rate, acceleration, at_speed] = figures.map(|figure| format!("{figure:.1e}"));
+        let at_speed = acceleration * speed * speed;
+        let [position, rate, acceleration] =
+            [position, rate, acceleration].map(|figure| format!("{figure:.1e}"));
+        // A reader compares it with that of the law.
+        let at_speed = if at_speed < 1e-3 { format!("{at_speed:.1e}") } else { format!("{at_speed:.3}") };
         misfits.push([name, position, rate, acceleration, at_speed]);
         Ok(misfit)
     };
@@ -167,7 +170,7 @@ fn peaks(first: &str) -> Table {
         &seat,
         &closer,
         &fork,
-        "torque (N m)",
+        "torque (N·m)",
         "in flight (%)",
     ])
 }

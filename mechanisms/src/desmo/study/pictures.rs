@@ -122,7 +122,7 @@ pub fn torques(tight: &Turn, loose: &Turn) -> Picture {
     let plot = Plot {
         caption: "Torque that the cams need".to_string(),
         x: ANGLE.to_string(),
-        y: "torque (N m)".to_string(),
+        y: "torque (N·m)".to_string(),
         curves: vec![
             Line::new("with play", &loose.angle, &loose.torque),
             Line::new("no play", &tight.angle, &tight.torque),
@@ -147,14 +147,15 @@ pub fn envelope(angle: &[f64], quantiles: &[[f64; 3]]) -> Picture {
     plot.picture()
 }
 
-/// Errors over evaluations, both as logarithms.
+/// Errors over evaluations, both in logarithmic scale.
 pub fn costs(points: &[[f64; 2]]) -> Picture {
-    let [x, y] = [0, 1].map(|axis| points.iter().map(|point| point[axis].log10()).collect::<Vec<_>>());
+    let [x, y] = [0, 1].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<_>>());
     let plot = Plot {
         caption: "Error of the lift over right-hand sides of a turn".to_string(),
-        x: "log10 of right-hand sides".to_string(),
-        y: "log10 of the error (m)".to_string(),
+        x: "right-hand sides".to_string(),
+        y: "error of the lift (m)".to_string(),
         curves: vec![Line::new("Dormand and Prince, order 8", &x, &y)],
+        is_logarithmic: true,
         ..Plot::default()
     };
     plot.picture()
