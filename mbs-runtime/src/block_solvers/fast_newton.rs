@@ -209,6 +209,21 @@ fn all_within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]
     pairs.all(|(residual, tolerance)| T::all(residual.abs().less(*tolerance)))
 }
 
+/// `true` if every residual is within its whole tolerance, as decisions: the first row that is not ends the question.
+#[inline(always)]
+fn are_granted<T: Scalar, const K: usize>(
+    residuals: &[T; K],
+    row_scales: &[T; K],
+    x: &[T; K],
+    jacobian: &[[T; K]; K],
+) -> bool {
+    let mut rows = residuals.iter().zip(row_scales).zip(jacobian);
+    rows.all(|((residual, scale), row)| {
+        let ([whole], size) = (required(&[*scale], x, &[*row]), residual.abs());
+        T::all(size.less(own_rounding(*scale)) | size.less(whole))
+    })
+}
+
 /// The largest |residual| over its whole tolerance, with its row; 2 where a residual is no number.
 #[cold]
 #[inline(never)]
@@ -219,10 +234,10 @@ fn worst_granted<T: Scalar, const K: usize>(
     jacobian: [[T; K]; K],
     rows: [u16; K],
 ) -> (T, u16) {
-    let whole = granted(residuals, row_scales, x, jacobian);
-    if !all_within(&residuals, &whole) {
+    if !are_granted(&residuals, &row_scales, &x, &jacobian) {
         return (T::constant(2.0), 0);
     }
+    let whole = granted(residuals, row_scales, x, jacobian);
     let mut worst = FastNewton::<T>::new(T::mask(true));
     worst.record(&rows, &residuals, &reciprocals(&whole));
     (worst.ratio, worst.row_alone)

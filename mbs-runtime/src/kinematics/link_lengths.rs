@@ -162,6 +162,13 @@ pub(crate) fn turn_little<T: Scalar, const N: usize>(
     are_parts(metric, &kink, [&before, &change, &after], T::constant(LARGEST_KINK), least)
 }
 
+/// [`turn_little`] of one coordinate by itself, and its movements by the rate before, by its change and by the rate after.
+#[inline(always)]
+pub(crate) fn turns_little<T: Scalar>([before, change, after]: [T; 3], least: T) -> T::Mask {
+    let sizes = before.abs() + change.abs() + after.abs();
+    (after - before - change).abs().less(T::constant(LARGEST_KINK) * sizes + least)
+}
+
 /// `true` if the `tangent` of a path leads to its end within an eighth or less, at a `margin`. `way`: from its start to its end.
 pub(crate) fn bend_little<T: Scalar, const N: usize>(
     metric: (&Points<N>, &[T; N]),
@@ -252,6 +259,7 @@ pub(crate) fn weighted<R: Real, const N: usize>(differences: &[R; N], weights: &
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scalar::sequence::Sequence;
 
     const fn entry(name: &'static str, unit: &'static str) -> Entry {
         Entry { name, unit, line: 0 }
@@ -287,5 +295,20 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_turns_little_by_each_coordinate_turns_little() {
+        let (mut sequence, points, least) = (Sequence::new(29), [Some(0), Some(0)], 1e-9);
+        let (mut each, mut all) = (0, 0);
+        for _ in 0..2000 {
+            let [before, change, mut after]: [[f64; 2]; 3] = sequence.matrix();
+            after.iter_mut().zip(before.iter().zip(&change)).for_each(|(after, (b, c))| *after += b + c);
+            let single = |k: usize| turns_little([before[k], change[k], after[k]], least);
+            let point = turn_little((&points, &[1.0; 2]), [&before, &change, &after], 1.0, [least; 2]);
+            assert!(point || !(single(0) && single(1)), "{before:?} {change:?} {after:?}");
+            (each, all) = (each + u32::from(single(0) && single(1)), all + u32::from(point));
+        }
+        assert!(each > 100 && all > each, "{each} {all}");
     }
 }

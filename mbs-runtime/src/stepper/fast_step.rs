@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use crate::block_solvers::convergence::Statistics;
 use crate::block_solvers::fast_newton::FastNewton;
-use crate::kinematics::homotopy::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
+use crate::kinematics::homotopy::LARGEST_SECOND_ORDER_TERM;
 use crate::kinematics::link_lengths;
 use crate::linear_algebra::parts::at;
 use crate::mechanism::margin::Margin;
@@ -19,7 +19,7 @@ pub(crate) const FEW: usize = 8;
 
 /// Second-order term (reference lengths) from which on a step of a mechanism with coordinates that are lengths is checked. With
 /// less, no link of a thousandth turns by half a radian.
-const QUICK_SECOND_ORDER_TERM: f64 = 1e-4;
+pub(super) const QUICK_SECOND_ORDER_TERM: f64 = 1e-4;
 
 /// Second-order term, and distance from the prediction over the margin, up to which a step needs no test, `with_lengths` among
 /// the coordinates or without.
@@ -67,19 +67,11 @@ pub(crate) struct FastStep<T: Scalar, const N: usize> {
     /// Lanes whose step leaves nothing to ask but a passage; [`judgement`](Self::judgement) tells of the others.
     pub quick: T::Mask,
     /// Lanes in which every block closed, on their branches, within their limits, and regular where they began.
-    held: T::Mask,
+    pub(super) held: T::Mask,
     /// The sum of the coordinates' sizes in the reference metric, where rates and factors are finite; NaN elsewhere.
-    size: T,
-}
-
-/// Tests of a step that is not quick.
-pub(crate) struct Judgement<T: Scalar> {
-    /// Lanes whose step passed all tests of one next to a regular position. The others are stepped with safeguards.
-    pub plain: T::Mask,
-    /// Lanes whose remaining residual is seen in the accelerations.
-    pub coarse: T::Mask,
-    /// Lanes in which a link much shorter than the reference length may have turned far: [`FastStep::settles`] tells.
-    pub doubtful: T::Mask,
+    pub(super) size: T,
+    /// `false` in a single lane whose blocks need pivoting: nothing else is of use, and [`in_stages`](Self::in_stages) solves.
+    pub ordered: bool,
 }
 
 impl<T: Scalar, const N: usize> FastStep<T, N> {
@@ -120,10 +112,15 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
             let zeros = [T::constant(0.0); N];
             let (mut motion, mut solver) = ([*prediction, zeros, zeros], FastNewton::<T, FAR>::new(lanes));
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
-            if T::all(if T::LANES == 1 { solved.ordered } else { solved.ordered | !lanes }) {
+            // No way leads to other code in one lane: what it needed would be put down for it.
+            if T::LANES == 1 || T::all(solved.ordered | !lanes) {
                 let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
                 let judge = Judge { mechanism, parameters, start, prediction, foreseen, most_way, solver };
-                return judge.judged(motion, (&solved.position, &solved.margin), sum);
+                let mut step = judge.judged(motion, (&solved.position, &solved.margin), sum);
+                if T::LANES == 1 {
+                    (step.ordered, step.quick) = (T::all(solved.ordered), step.quick & solved.ordered);
+                }
+                return step;
             }
             // The addresses of copies.
             let (prediction, t, foreseen) = (*prediction, t, foreseen);
@@ -153,7 +150,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
 
     /// The step from its prediction, all positions before all rates; with pivoting where a block asks for it.
     #[inline(always)]
-    fn in_stages<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
+    pub(crate) fn in_stages<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
         (mechanism, parameters): (&S, &S::Parameters),
         start: &Start<'_, T, N>,
         (prediction, foreseen): (&[T; N], T::Mask),
@@ -190,64 +187,6 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
     #[inline(always)]
     pub(crate) fn evaluations(&self) -> T {
         if T::LANES > 1 { self.counts } else { T::constant(f64::from(self.evaluations)) }
-    }
-
-    /// Answers about a step from `start` to `t` that is not quick, `with_lengths` among the coordinates or without.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn judgement(
-        &self,
-        start: &Start<'_, T, N>,
-        t: T,
-        scales: &[T; N],
-        with_lengths: bool,
-    ) -> Judgement<T> {
-        let [most_second, most_way] = quick::<T::Real>(with_lengths);
-        let h = t - start.t;
-        let half_square = T::constant(0.5) * h * h;
-        let (mut trusted, mut near) = (T::mask(true), T::mask(true));
-        for (acceleration, scale) in start.qdd.iter().zip(scales) {
-            let second = half_square * *acceleration;
-            trusted = trusted & self::trusted(second, *scale, LARGEST_SECOND_ORDER_TERM);
-            near = near & self::trusted(second, *scale, most_second);
-        }
-        // Written so that NaN is not plain.
-        Judgement {
-            plain: self.is_sound()
-                & trusted
-                & self.correction.less(T::constant(LARGEST_APPROACH) * self.margin),
-            coarse: is_coarse(self.residual, self.margin),
-            doubtful: !near | !self.correction.less(T::constant(most_way) * self.margin),
-        }
-    }
-
-    /// Lanes that are solved, regular at both ends, finite, on their branches and within their limits.
-    fn is_sound(&self) -> T::Mask {
-        self.held & singular::ZONE.of::<T>().less(self.margin) & self.size.less(largest_size())
-    }
-
-    /// `true` if the links of a doubtful step from `start` to `t` turned as predicted, so little that the assembly is kept.
-    #[inline(always)] // for the points are known where it is asked
-    pub(crate) fn settles(
-        &self,
-        metric: (&link_lengths::Points<N>, &[T; N]),
-        start: &Start<'_, T, N>,
-        t: T,
-    ) -> T::Mask {
-        let h = t - start.t;
-        let half_square = T::constant(0.5) * h * h;
-        let (mut off, mut near) = (self.q, T::mask(true));
-        let [q, qd, qdd] = start.rates();
-        let before = q.iter().zip(qd.iter().zip(qdd)).zip(metric.1);
-        for (off, ((place, (rate, acceleration)), scale)) in off.iter_mut().zip(before) {
-            let second = half_square * *acceleration;
-            near = near & trusted(second, *scale, QUICK_SECOND_ORDER_TERM);
-            *off = *off - (*place + h * *rate + second);
-        }
-        let least = [link_lengths::least(self.margin); N];
-        let little = link_lengths::turn_little(metric, [start.qd, start.qdd, &self.qd], h, least);
-        let foreseen = link_lengths::are_foreseen(metric, &off, [start.qd, start.qdd], (h, self.margin));
-        (near | little) & foreseen
     }
 
     /// Signs of the blocks' determinants of lane `lane`.
@@ -320,6 +259,7 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize, const FAR
             quick,
             held,
             size,
+            ordered: true,
         }
     }
 }
@@ -327,13 +267,13 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize, const FAR
 impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
     /// q, q̇, q̈.
     #[inline(always)]
-    fn rates(&self) -> [&'a [T; N]; 3] {
+    pub(super) fn rates(&self) -> [&'a [T; N]; 3] {
         [self.q, self.qd, self.qdd]
     }
 
     /// q + h q̇ + h²/2 q̈, and the lanes in which the last term is less than `most` reference lengths (or rad).
     #[inline(always)]
-    fn predicted(&self, t: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
+    pub(crate) fn predicted(&self, t: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
         let h = t - self.t;
         let half_square = T::constant(0.5) * h * h;
         let alone = size_of::<T>() == size_of::<T::Real>();
@@ -467,12 +407,12 @@ fn in_four_parts<T: Scalar, const N: usize>(values: &[T; N], operation: impl Fn(
 
 /// `true` if the second-order term of a coordinate of this scale is less than `most`; false for NaN.
 #[inline(always)]
-fn trusted<T: Scalar>(term: T, scale: T, most: f64) -> T::Mask {
+pub(super) fn trusted<T: Scalar>(term: T, scale: T, most: f64) -> T::Mask {
     term.abs().less(T::constant(most) * scale)
 }
 
 /// Sum of the coordinates' sizes in the reference metric up to which their rounding leaves digits enough.
 #[inline(always)]
-fn largest_size<T: Scalar>() -> T {
+pub(super) fn largest_size<T: Scalar>() -> T {
     T::splat(positions::COARSEST_RESOLUTION.of::<T::Real>() / T::Real::EPSILON)
 }

@@ -5,6 +5,7 @@ pub(crate) mod dependent_rows;
 pub(crate) mod fast_step;
 pub(crate) mod homotopy_step;
 pub(crate) mod instant;
+pub(crate) mod judgement;
 pub(crate) mod mismatch;
 pub(crate) mod reach;
 pub(crate) mod saved;

@@ -9,8 +9,9 @@ use crate::linear_algebra::vectors::{largest_difference, weights};
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::Real;
 use crate::stepper::Stepper;
-use crate::stepper::fast_step::{FastStep, Judgement, Start, quick};
+use crate::stepper::fast_step::{FastStep, Start, quick};
 use crate::stepper::instant::{Predecessor, Rates, SolvedPosition};
+use crate::stepper::judgement::Judgement;
 use crate::stepper::state::StepperState;
 use crate::tolerances::positions;
 
@@ -53,11 +54,43 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
                     self.changed = false;
                     return Ok(self.state.follow(&trial, t));
                 }
-                // The address of a copy, so that the trial itself stays in registers.
-                let looked_at = trial;
-                if let Some(statistics) = self.looked_at(&looked_at, t, phases) {
-                    return Ok(statistics);
+                if const { !S::BLOCK_BY_BLOCK } || trial.ordered {
+                    // The address of a copy, so that the trial itself stays in registers.
+                    let looked_at = trial;
+                    if let Some(statistics) = self.looked_at(&looked_at, t, phases) {
+                        return Ok(statistics);
+                    }
                 }
+            }
+            if const { S::BLOCK_BY_BLOCK } && !trial.ordered {
+                return self.advanced_in_stages::<FAR>(t, phases);
+            }
+        }
+        self.advanced_with_care(t, phases)
+    }
+
+    /// [`advanced_by`](Self::advanced_by) where blocks need pivoting.
+    #[cold]
+    #[inline(never)]
+    fn advanced_in_stages<const FAR: bool>(
+        &mut self,
+        t: R,
+        phases: S::Phases,
+    ) -> Result<Statistics, Failure> {
+        let scales = self.mechanism.coordinate_scales(&self.parameters);
+        let (StepperState { q, qd, qdd, margin, .. }, weights) = (&self.state, &weights(&scales));
+        let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
+        let [most_second, _] = quick::<R>(const { link_lengths::any(S::COORDINATES) });
+        let (prediction, foreseen) = start.predicted(t, &scales, most_second);
+        let (mechanism, prediction) = ((&self.mechanism, &self.parameters), (&prediction, foreseen));
+        let trial = FastStep::in_stages::<S, M, FAR>(mechanism, &start, prediction, t, R::mask(true));
+        if trial.orientation(0) == self.state.orientation {
+            if trial.quick && !self.may_have_folded() {
+                self.changed = false;
+                return Ok(self.state.follow(&trial, t));
+            }
+            if let Some(statistics) = self.looked_at(&trial, t, phases) {
+                return Ok(statistics);
             }
         }
         self.advanced_with_care(t, phases)
@@ -67,6 +100,24 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     #[cold]
     #[inline(never)]
     fn looked_at(&mut self, trial: &FastStep<R, N>, t: R, phases: S::Phases) -> Option<Statistics> {
+        let near = trial.correction <= R::constant(approach::<S, R, N, M>()) * trial.margin;
+        let leads = self.may_have_folded() || (self.changed && !near);
+        if !leads {
+            let scales = self.mechanism.coordinate_scales(&self.parameters);
+            let StepperState { q, qd, qdd, margin, .. } = &self.state;
+            let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights: &scales };
+            if trial.is_steady((&const { link_lengths::points(S::COORDINATES) }, &scales), &start, t) {
+                self.changed = false;
+                return Some(self.state.follow(trial, t));
+            }
+        }
+        self.judged(trial, leads, t, phases)
+    }
+
+    /// [`looked_at`](Self::looked_at) by all tests; `leads`: the tangent must lead to the end.
+    #[cold]
+    #[inline(never)]
+    fn judged(&mut self, trial: &FastStep<R, N>, leads: bool, t: R, phases: S::Phases) -> Option<Statistics> {
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let StepperState { q, qd, qdd, margin, .. } = &self.state;
         let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights: &scales };
@@ -75,10 +126,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if !plain {
             return None;
         }
-        let folds = self.may_have_folded();
-        if doubtful || folds {
-            let near = trial.correction <= R::constant(approach::<S, R, N, M>()) * trial.margin;
-            let settles = if folds || (self.changed && !near) {
+        if doubtful || leads {
+            let settles = if leads {
                 self.tangent_leads(&trial.q, trial.margin, t, phases)
             } else {
                 let points = const { link_lengths::points(S::COORDINATES) };
