@@ -360,7 +360,7 @@ fn print_limits(out: &mut Output, one: &Made) -> Result<(), CommandError> {
     let head = if one.name.is_empty() { "limit".to_string() } else { format!("{}: limit", one.name) };
     writeln!(out, "{head:<22}{:>16}{:>16}{:>12}", "bound", "value", "at")?;
     for one in &one.verdicts {
-        let sign = if one.limit.is_least() { ">" } else { "<" };
+        let sign = if one.limit.is_least() { "≥" } else { "≤" };
         let bound = format!("{sign} {}", shown(one.limit.name(), one.limit.bound()));
         let mark = if one.kept { "" } else { "  broken" };
         let (value, at) = (shown(one.limit.name(), one.value), format!("{:.2} deg", one.angle.to_degrees()));

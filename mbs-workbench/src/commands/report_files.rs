@@ -35,7 +35,10 @@ fn size(cells: usize) -> Option<String> {
 /// Refuses a directory that nothing can be written into, before anything is computed. It is not made yet: a run may fail.
 pub fn require_writable(directory: &Path) -> Result<(), CommandError> {
     let fail = |reason: &str| {
-        Err(CommandError::Failed(format!("cannot write into {}: {reason}", directory.display())))
+        let place = directory.display();
+        Err(CommandError::Failed(format!(
+            "cannot write into {place}: {reason}\nname a folder that you may write into"
+        )))
     };
     let absolute = std::path::absolute(directory).unwrap_or_else(|_| directory.to_path_buf());
     let Some(present) = absolute.ancestors().find(|ancestor| fs::symlink_metadata(ancestor).is_ok()) else {
