@@ -148,7 +148,7 @@ def by_lagrange(t, y):
 
 def falling_chain():
     """Every tenth point of a chain of 200 links that falls from level, by both equations: they agree."""
-    times = [0.025, 0.05, 0.075, 0.1]
+    times = [0.00625, 0.0125, 0.01875, 0.025]
     start = np.concatenate([np.full(LINKS, np.pi / 2), np.zeros(LINKS)])
     found = []
     for equations in (by_tensions, by_lagrange):
