@@ -197,3 +197,27 @@ fn an_event_switches_a_force_of_a_stiff_text() {
     assert!((run.loads()[0] - first).abs() < 1e-9, "{:?}", run.loads());
     assert!(end < 1.8 && run.counts().steps < 300, "{:?}", run.counts());
 }
+
+mechanism! {
+    /// A disk that a growing pressure lifts off its seat, as the third power of the time.
+    pub mechanism Disk;
+    coord x: m = 0;
+    body disk { mass: 1, com: [0, x] }
+    contact seat { gap: x, restitution: 0.3 }
+    force pressure: 2500 [N/s]*t - 100N on x;
+    start x = 0 rate 0;
+}
+
+#[test]
+fn a_disk_that_lifts_off_slowly_takes_few_steps() {
+    let method = Explicit::new(Radau5, Projection::default());
+    for tolerance in [1e-6, 1e-9] {
+        let run = Simulation::start_from_text(Disk::default(), method, 0.0_f64).expect("it starts");
+        let mut run = run.with_tolerance(Tolerance::new(tolerance));
+        run.advance_to(0.078).expect("it lifts off");
+        let exact = 2500.0 / 6.0 * 0.038_f64.powi(3);
+        assert!((run.q()[0] - exact).abs() < 1e-9, "{} {exact}", run.q()[0]);
+        // Errors within a step are as large as the gap: a step there that ends where they pass zero leads nowhere.
+        assert!(run.counts().steps < 300, "{tolerance}: {:?}", run.counts());
+    }
+}

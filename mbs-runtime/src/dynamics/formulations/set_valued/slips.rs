@@ -92,7 +92,10 @@ fn first_touch<R: Real>(
             let is_open = value(start, SIDES * index) < begun + begun;
             if is_open || found.is_some_and(|(member, _)| member == SIDES * index) {
                 let touched = touch(|t| value(t, SIDES * count + index), start, (last, beyond));
-                first = Some(first.map_or(touched, |first| first.min(touched)));
+                // One that begins at zero may lift off so slowly that the errors of a step take it there and back: steps go on.
+                if is_open || R::constant(0.5) * (last - start) <= touched - start {
+                    first = Some(first.map_or(touched, |first| first.min(touched)));
+                }
             }
         }
     }
