@@ -42,9 +42,8 @@ fn filled(text: &str) -> String {
 }
 
 fn page(case: &Case) -> String {
-    let Description {
-        title, origin, why, elsewhere, here, bounds, known, tables, refused, outside, few, ..
-    } = &case.description;
+    let Description { title, origin, why, elsewhere, here, bounds, known, tables, refused, outside, .. } =
+        &case.description;
     let mut page = format!("# {title}\n\n`{}`; from {origin}.\n\n", case.name);
     for (head, text) in
         [("Why it is hard", why), ("What fails elsewhere", elsewhere), ("What is done here", here)]
@@ -81,14 +80,6 @@ fn page(case: &Case) -> String {
             let _ = writeln!(page, "| {} | {bound:e} |", kind(*of));
         }
         page.push('\n');
-    }
-    if let Some(few) = few {
-        let text = format!(
-            "Runs take minutes: {} variants by {} alone, and only where the case is named or with `--long`.",
-            few.variants,
-            few.methods.join(", ")
-        );
-        page += &format!("{}\n\n", filled(&text));
     }
     for outside in outside {
         let all = |names: &[String], whole: &str| {
