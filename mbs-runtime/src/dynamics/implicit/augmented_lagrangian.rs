@@ -48,6 +48,8 @@ const SUSPECT: f64 = 0.99;
 ///
 /// Next to a singular position the springs hold a direction by the square of the margin, and its multiplier grows with its reciprocal.
 /// There corrections close the rows and take the multipliers along.
+///
+/// Between changes of modes lie steps of rounding's length, over which a difference of places gives no velocity: Heun's rule takes those.
 /// Source: Bayo & Ledesma 1996; Cuadrado, Cardenal, Morer & Bayo 2004 for the projections with K and C.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AugmentedLagrangian;
@@ -216,7 +218,7 @@ impl AugmentedLagrangian {
     }
 }
 
-/// Size of places (m) that is rounding.
+/// Rounding of coordinates of size `q` (N), in the metric.
 fn rounding_of_places<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     q: &[R; N],
