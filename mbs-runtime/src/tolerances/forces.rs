@@ -72,9 +72,12 @@ pub(crate) const OF_MOVEMENT: Law = Law::ulps(4.0);
 /// longest steps that the method is for.
 pub(crate) const SLOW: Law = Law::fixed(1e-5);
 
-/// Movement of a step over the size of the coordinates, in the metric, of which two results may differ in any ratio: a hundred times a
-/// correction that no longer falls, in single precision twice one that is rounding.
+/// Movement of a step, in the metric, of which two results may differ in any ratio: a hundred times a correction that no longer falls, in
+/// single precision twice one that is rounding.
 pub(crate) const UNRESOLVED_MOVEMENT: Law = Law::at_least(1e-7, 128.0);
+
+/// The same over the size of the coordinates: twice a correction that is rounding.
+pub(crate) const MOVED_BY_ROUNDING: Law = Law::ulps(128.0);
 
 /// Part of a direction of the rows that springs take off, below which its multiplier is left as it is: the square of a margin of 1e-6 and
 /// the springs' factor of 1e4. There rounding of the rows moves the coordinates as far as the force of a step does.

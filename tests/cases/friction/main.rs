@@ -15,3 +15,4 @@ mod d5_single_precision;
 mod d5_slider_crank;
 mod d5_small_motions;
 mod d5_smooth_normal_forces;
+mod frames;

@@ -159,7 +159,9 @@ fn require_resolved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
     let apart = whole.y.qd.plus(R::constant(-1.0), &[1.0], [&end.y.qd]);
     let (change, speed) = (R::constant(SHARE) * size(&apart), size(&from.y.qd).max(size(&end.y.qd)));
     let allowed = R::constant(most);
-    let negligible = forces::UNRESOLVED_MOVEMENT.of::<R>() * size(&end.y.q).max(R::constant(1.0));
+    // A frame far away makes places large, and movements no larger.
+    let negligible =
+        forces::UNRESOLVED_MOVEMENT.of::<R>().max(forces::MOVED_BY_ROUNDING.of::<R>() * size(&end.y.q));
     if change <= allowed * speed || h * change <= negligible {
         return Ok(());
     }
