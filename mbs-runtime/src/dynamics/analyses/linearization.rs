@@ -7,10 +7,10 @@ use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::states::require_no_states;
 use crate::dynamics::linear_systems::tangent::Tangent;
-use crate::dynamics::model::Model;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::require_smooth;
 use crate::dynamics::model::metric::Metric;
+use crate::dynamics::model::{Model, Solved};
 use crate::failure::Failure;
 use crate::linear_algebra::vectors::{dot, times};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
@@ -137,7 +137,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     independent: &[u16],
 ) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
     require_smooth::<S, R, N, M>()?;
-    let (zero, mut parameters) = (R::constant(0.0), mechanism.parameters());
+    let mut parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, t, &y.q);
     let model = Model::of_states(mechanism, &parameters, &metric);
     model.check(t, y)?;
@@ -147,29 +147,40 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         (parameters, judged) = (modes, Some(rates));
     }
     let model = Model::of_states(mechanism, &parameters, &metric);
-    let position = model.position(t, y);
+    about_in_modes(&model, (t, y, qdd), (lambda, judged.as_ref()), independent)
+}
+
+/// The matrices in the modes of the model, whose parameters have the forces of rows that hold. `judged`: its rates, of a text with modes.
+pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, y, qdd): (R, &IntegratorState<R, N, S::States>, &[R; N]),
+    (lambda, judged): (&[R; M], Option<&Solved<R, N, M, S::States>>),
+    independent: &[u16],
+) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
+    let (mechanism, parameters, metric) = (model.mechanism, model.parameters, model.metric);
+    let (zero, position) = (R::constant(0.0), model.position(t, y));
     if judged.is_some() {
         model.require_modes_of(t, y, (qdd, lambda))?;
     }
-    let tangent = Tangent::of(&model, &position, y, qdd, lambda);
-    let slopes = mechanism.state_slopes(&parameters, &position, &y.qd, &y.states, lambda);
-    let phi_q = mechanism.phi_q(&parameters, &position);
-    let system = System::new(&tangent.mass, &phi_q, &metric);
+    let tangent = Tangent::of(model, &position, y, qdd, lambda);
+    let slopes = mechanism.state_slopes(parameters, &position, &y.qd, &y.states, lambda);
+    let phi_q = mechanism.phi_q(parameters, &position);
+    let system = System::new(&tangent.mass, &phi_q, metric);
     let factors = system.factorize_rank_revealing(singular::DEPENDENT.of(), S::COORDINATES, t)?;
     let scaled = |rates: &[R; N]| {
         let rates = rates.iter().zip(&metric.coordinates);
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
     };
     let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
-    if let Some(rates) = &judged.filter(|_| !S::SET_VALUED.is_empty()) {
-        let free = FreeOfHeld { model: &model, t, y, rates, basis: (basis, freedom) };
+    if let Some(rates) = judged.filter(|_| !S::SET_VALUED.is_empty()) {
+        let free = FreeOfHeld { model, t, y, rates, basis: (basis, freedom) };
         (basis, freedom) =
-            mechanism.set_valued_rows(&parameters, &position, &y.qd, &y.states, lambda, free)?;
+            mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, free)?;
     }
     let slow = scaled(&y.qd) <= forces::AT_REST.of();
-    if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(&model, t, y, (&position, qdd), lambda)?) {
+    if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(model, t, y, (&position, qdd), lambda)?) {
         model.require_nothing_held(t)?;
-        let variation = Variation::of(&model, (t, y, qdd), &position, independent)?;
+        let variation = Variation::of(model, (t, y, qdd), &position, independent)?;
         let (linear, rates) = moving(&tangent, &variation);
         return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &rates))));
     }
@@ -180,7 +191,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         mass: reduced(&tangent.mass),
         damping: reduced(&tangent.damping),
         stiffness: reduced(&tangent.stiffness),
-        frozen: has_moving_states(&model, &position, y, (slopes.as_ref(), lambda)),
+        frozen: has_moving_states(model, &position, y, (slopes.as_ref(), lambda)),
         independent: [false; N],
     };
     Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &[[zero; N]; N]))))
