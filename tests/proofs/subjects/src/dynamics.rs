@@ -101,7 +101,6 @@ where
     black_box(entry::linearize(motion.mechanism(), motion.instant()).is_ok());
     black_box(entry::inverse(motion.mechanism(), motion.t(), &q, &motion.instant().y.states).is_ok());
     black_box(entry::equilibrium(motion.mechanism(), motion.t(), &q).is_ok());
-    sleeping(mechanism, Explicit::new(DormandPrince5, Projection::default()))?;
     adaptive(mechanism, Explicit::new(DormandPrince5, Projection::default()))
 }
 
@@ -121,14 +120,14 @@ where
 }
 
 /// Simulations side by side, of which those at rest sleep.
-fn sleeping<S, I: Embedded, F, R: Real, const N: usize, const M: usize>(
-    mechanism: S,
-    method: Explicit<I, F>,
-) -> Result<(), Failure>
+///
+/// # Errors
+/// Those of the start.
+pub fn exercise_sleep<S, R: Real, const N: usize, const M: usize>(mechanism: S) -> Result<(), Failure>
 where
     S: Dynamic<R, N, M> + Copy,
-    F: Formulation<S, R, N, M> + Copy,
 {
+    let method = Explicit::new(DormandPrince5, Projection::default());
     let (h, end) = (black_box(R::constant(1e-3)), black_box(R::constant(0.1)));
     let start = entry::start_from_text(black_box(mechanism), method, black_box(R::constant(0.0)))?;
     let mut lanes = Simulations::new([start, start]);

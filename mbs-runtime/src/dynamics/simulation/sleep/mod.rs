@@ -21,7 +21,7 @@ const SHORT: f64 = 8.0;
 
 /// `L` simulations of one text, a lane each, each with its own design, time and state. Lanes at stable rest sleep.
 ///
-/// A lane falls asleep where a call ends with all speeds 0 to rounding, no force on the motions that are free, and these stable: their
+/// A lane falls asleep where a call ends with all speeds 0 to rounding, and no force on the motions that are free. These must be stable: their
 /// stiffness is symmetric and positive definite, and no damping feeds them. Forces of frictions that stick and of rigid contacts
 /// must be within their cones. A step of a lane that sleeps evaluates nothing: the time moves on, and inputs with rates.
 ///
