@@ -1,5 +1,6 @@
 //! Small motions about a state: M̄ s̈ + C̄ ṡ + K̄ s = 0 in as many coordinates s as there are degrees of freedom.
 
+use crate::dynamics::analyses::held_variation::{AlongMotion, FreeMotions};
 use crate::dynamics::analyses::modes::FreeOfHeld;
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::formulations::variation::{FreeMotion, Variation};
@@ -78,8 +79,8 @@ pub struct Linearization<R, const N: usize> {
 /// [`NonFinite`](crate::FailureKind::NonFinite); [`SingularMass`](crate::FailureKind::SingularMass) where a free motion moves no mass; [`StatesUnknown`](crate::FailureKind::StatesUnknown) for a text with
 /// first-order states, see [`linearize_with_states`]; [`NotSmooth`](crate::FailureKind::NotSmooth);
 /// [`SetValuedEdge`](crate::FailureKind::SetValuedEdge) where a rigid contact touches without a force or a friction is at its limit;
-/// [`SetValuedForce`](crate::FailureKind::SetValuedForce) about a state that moves while one holds, and
-/// [`EventOfMotion`](crate::FailureKind::EventOfMotion), where the state is not one of the modes that it would start in.
+/// [`SetValuedForce`](crate::FailureKind::SetValuedForce) about a state that moves while a friction slides on a rigid contact;
+/// this and [`EventOfMotion`](crate::FailureKind::EventOfMotion) where the state is not one of the modes that it would start in.
 pub fn linearize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
@@ -179,9 +180,10 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
     }
     let slow = scaled(&y.qd) <= forces::AT_REST.of();
     if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(model, t, y, (&position, qdd), lambda)?) {
-        model.require_nothing_held(t)?;
-        let variation = Variation::of(model, (t, y, qdd), &position, independent)?;
-        let (linear, rates) = moving(&tangent, &variation);
+        let variation = &Variation::of(model, (t, y, qdd), &position, independent)?;
+        let along = AlongMotion { model, t, y, qdd, lambda, variation, preferred: independent };
+        let motions = mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, along)?;
+        let (linear, rates) = moving(&tangent, &motions);
         return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &rates))));
     }
     let reduced = |matrix: &[[R; N]; N]| reduced(&basis, &basis.map(|right| times(matrix, &right)), freedom);
@@ -262,15 +264,15 @@ where
 }
 
 /// The matrices about a state that moves, and Ṙ, column by column.
-fn moving<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+fn moving<R: Real, const N: usize>(
     tangent: &Tangent<R, N>,
-    variation: &Variation<'_, S, R, N, M>,
+    (motions, independent): &FreeMotions<R, N>,
 ) -> (Linearization<R, N>, [[R; N]; N]) {
     let (one, none) = (R::constant(1.0), [[R::constant(0.0); N]; N]);
     let (mut basis, mut rates, mut mass, mut damping, mut stiffness) = (none, none, none, none, none);
     let mut freedom = 0;
-    for (index, _) in variation.independent.iter().enumerate().filter(|(_, independent)| **independent) {
-        let FreeMotion { place, rate, acceleration } = variation.motion(index);
+    for (motion, _) in motions.iter().zip(independent).filter(|(_, independent)| **independent) {
+        let FreeMotion { place, rate, acceleration } = *motion;
         let columns = [&mut basis, &mut rates, &mut mass, &mut damping, &mut stiffness]
             .map(|columns| columns.get_mut(freedom));
         if let [Some(basis), Some(turning), Some(mass), Some(damping), Some(stiffness)] = columns {
@@ -290,7 +292,7 @@ fn moving<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         stiffness: reduced(&basis, &stiffness, freedom),
         basis,
         frozen: true,
-        independent: variation.independent,
+        independent: *independent,
     };
     (linear, rates)
 }
