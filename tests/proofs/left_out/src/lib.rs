@@ -1,7 +1,7 @@
 //! The emitted functions of bodies under every effect but one under fixed symbols, to be compared byte by byte between two builds.
 //!
-//! With the feature `scenes` they are those of scenes of texts that have all effects, otherwise those of texts without one: `build.rs` writes
-//! both from `every_effect/text.rs` and `every_effect/rows.rs`.
+//! With the feature `scenes` they are those of scenes of texts that have all effects, otherwise those of texts without one. `build.rs` writes
+//! both, from `every_effect/text.rs` and `every_effect/rows.rs`.
 #![no_std]
 #![allow(non_camel_case_types)]
 
