@@ -48,10 +48,11 @@ pub fn ci() -> Result<(), String> {
     documents::rustdoc()?;
     step(&mut command("cargo", &["test", "--workspace"]))?;
     instructions::run(false)?;
-    hard_cases(&["--cases", FEW_CASES])
+    hard_cases(&[], &["--cases", FEW_CASES])
 }
 
-/// Cases of the first tier, one a kind of trouble: a program of all takes seven minutes of processor time to build.
+/// Cases of the first tier, one a kind of trouble: a program of all takes seven minutes of processor time to build. Their program is built
+/// without optimisation, with the crates that the tests have built.
 const FEW_CASES: &str = "change_point,lock_up,pendulum";
 
 /// All of [`ci`], and checks that take long or need further tools.
@@ -79,16 +80,16 @@ pub fn full() -> Result<(), String> {
     lines::run(false)?;
     costs::peers()?;
     costs::index()?;
-    hard_cases(&["--variants", "8"])?;
+    hard_cases(&["--release"], &["--variants", "8"])?;
     planted::run(&[])?;
     fuzz::run(60, false)?;
     oldest()
 }
 
-/// The list of hard cases: none of its runs is wrong.
-fn hard_cases(options: &[&str]) -> Result<(), String> {
-    let words = ["run", "--release", "-p", "mbs-workbench", "--bin", "mbs", "--", "hard-cases", "--quick"];
-    step(command("cargo", &words).args(options))
+/// The list of hard cases: none of its runs is wrong. `profile`: options of `cargo run`.
+fn hard_cases(profile: &[&str], options: &[&str]) -> Result<(), String> {
+    let words = ["-p", "mbs-workbench", "--bin", "mbs", "--", "hard-cases", "--quick"];
+    step(command("cargo", &["run"]).args(profile).args(words).args(options))
 }
 
 /// Fails where a crate is built twice, for the macro and for the tests: with other features, or in another version.

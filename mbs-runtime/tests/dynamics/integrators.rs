@@ -174,7 +174,7 @@ fn a_passage_through_zero_is_found_in_its_direction() {
                 let course = accepted.course(equation);
                 let step = (course.start(), course.end());
                 found.extend(
-                    monitor.first(step, |t| course.at(t).qd[0]).expect("a number").map(|found| found.t),
+                    monitor.first(step, &mut |t| course.at(t).qd[0]).expect("a number").map(|found| found.t),
                 );
                 Ok(true)
             },

@@ -57,6 +57,14 @@ where
         Ok(self.slip(step, (start, first.unwrap_or(end)))?.or(first))
     }
 
+    /// `true` if a contact closes at `y`.
+    pub(crate) fn strikes(&mut self, t: R, y: &Moving<S, R, N, M>) -> bool {
+        if const { !S::HAS_RIGID_CONTACTS } || self.model.first_order {
+            return false;
+        }
+        self.at(t, &y.phases, |model, _, _, _| model.strikes(t, &y.y))
+    }
+
     /// The impacts of contacts that close at `y`; `true` if there are any.
     #[inline(never)]
     fn strike(&mut self, t: R, y: &mut Moving<S, R, N, M>) -> Result<bool, Failure> {

@@ -46,6 +46,20 @@ impl<T: Scalar, const N: usize, const M: usize> Metric<T, N, M> {
 }
 
 impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
+    /// Rounding of a `function` of coordinates: its change where each of `q` (N), one by one, moves by the rounding of a place.
+    pub(crate) fn rounding_of(&self, q: &[R; N], mut function: impl FnMut(&[R; N]) -> R) -> R {
+        let (value, mut sum) = (function(q), R::constant(0.0));
+        for (index, scale) in self.coordinates.iter().enumerate() {
+            let mut beside = *q;
+            let moved = beside.iter_mut().skip(index).take(1);
+            moved.for_each(|q| *q = *q + motion::NO_VALUE.of::<R>() * (q.abs() + *scale));
+            let change = (function(&beside) - value).abs();
+            // A function may have no value beside.
+            sum = if change.is_finite() { sum + change } else { sum };
+        }
+        sum
+    }
+
     /// Metric of a mechanism about `q` (N) at time `t` (s). A row's scale is the largest entry of its gradient, the coordinates
     /// over their scales, at `q` and at positions next to it. So a gradient which vanishes at a singular position is seen to be
     /// small.

@@ -6,12 +6,12 @@ use crate::dynamics::formulations::singular::passage::Passage;
 use crate::dynamics::integrators::embedded::Embedded;
 use crate::dynamics::integrators::equation::Equation;
 use crate::dynamics::integrators::event::monitor::Stopped;
-use crate::dynamics::integrators::event::{Dense, Direction, MOST_RESOLVED};
+use crate::dynamics::integrators::event::{Dense, Direction, MOST_RESOLVED, Reach};
 use crate::dynamics::integrators::step_control::{Accepted, Adaptive};
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::Tolerance;
 use crate::dynamics::model::{Counts, Formulation, Model};
-use crate::dynamics::simulation::fixed_run_events::event_failure;
+use crate::dynamics::simulation::fixed_run_events::{WithinStep, event_failure};
 use crate::dynamics::simulation::graded_steps::ContactSteps;
 use crate::dynamics::simulation::{Fresh, Simulation};
 use crate::failure::Failure;
@@ -276,15 +276,27 @@ where
                 if const { S::HAS_MODES } {
                     let [before, after] =
                         [&last.y.y, &accepted.start.y.y].map(|y| event.at(start, &y.q, &y.qd));
-                    monitor.jump(before, after);
+                    let y = &accepted.start.y.y;
+                    monitor.jump(before, after, || {
+                        model.metric.rounding_of(&y.q, |q| event.at(start, q, &y.qd))
+                    });
                 }
-                let found = monitor.first((start, end), |t| {
-                    let y = course.at(t).y;
-                    event.at(t, &y.q, &y.qd)
-                });
+                let mut watched = WithinStep {
+                    metric: model.metric,
+                    course: |t| course.at(t).y,
+                    event: |t, q: &_, qd: &_| event.at(t, q, qd),
+                };
+                let found = monitor.first((start, end), &mut watched);
                 if let Some(reach) = found.map_err(event_failure)? {
                     stopped = Some((reach, course.at(reach.t)));
                     end = reach.t;
+                } else if equations.strikes(end, &accepted.end.y) {
+                    let y = &accepted.end.y.y;
+                    let mut value = |q: &[R; N]| event.at(end, q, &y.qd);
+                    let scale = model.metric.rounding_of(&y.q, &mut value);
+                    if monitor.reaches(value(&y.q), scale) {
+                        stopped = Some((Reach { t: end, scale }, accepted.end.y));
+                    }
                 }
             }
             let at = |t| course.at(t).y;

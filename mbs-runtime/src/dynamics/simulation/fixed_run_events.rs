@@ -2,11 +2,13 @@
 
 use crate::dynamics::integrators::event::monitor::{Monitor, Stopped};
 use crate::dynamics::integrators::event::{
-    Direction, MOST_BOUNDED_PARTS, MOST_RESOLVED, Scrutiny, Unanswered,
+    Direction, Function, MOST_BOUNDED_PARTS, MOST_RESOLVED, Scrutiny, Unanswered,
 };
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::Counts;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::Method;
+use crate::dynamics::model::metric::Metric;
 use crate::dynamics::simulation::Simulation;
 use crate::dynamics::simulation::fixed_run::{Ahead, AheadOf, end_of};
 use crate::failure::{Failure, FailureKind};
@@ -77,7 +79,8 @@ where
                 let before = if const { S::HAS_MODES } { self.value(&mut event) } else { R::constant(0.0) };
                 self.decide_modes()?;
                 if const { S::HAS_MODES } {
-                    monitor.jump(before, self.value(&mut event));
+                    let after = self.value(&mut event);
+                    monitor.jump(before, after, || self.rounding(&mut event));
                 }
                 let rest = end - self.now.t;
                 let to_kink = part < most || S::HAS_MODES;
@@ -86,14 +89,23 @@ where
                     false => self.ahead(rest, self.counts, false)?,
                 };
                 let before = monitor;
-                let found = reached(&mut monitor, &whole, &mut event)?;
+                let found = reached(&mut monitor, (&self.metric, &whole), &mut event)?;
                 let (last, is_event) = match found {
                     Some((t, _)) => self.ahead_to_event((whole, to_kink), t, before, &mut event)?,
                     None => (whole, false),
                 };
                 self.check_ahead(&last)?;
                 self.go(&last);
-                if let Some((_, scale)) = found.filter(|_| is_event) {
+                let found = match found.filter(|_| is_event) {
+                    Some((_, scale)) => Some(scale),
+                    None => {
+                        let mut at_end = if found.is_some() { before } else { monitor };
+                        let reached = self.reached_by_impact(&mut at_end, &mut event);
+                        monitor = if found.is_some() { monitor } else { at_end };
+                        reached
+                    }
+                };
+                if let Some(scale) = found {
                     self.stopped = Some(Stopped::new(self.now.t, self.value(&mut event), scale));
                     return Ok(true);
                 }
@@ -103,6 +115,28 @@ where
             }
         }
         Ok(false)
+    }
+
+    /// Scale of an event function that an impact at the present instant turns back where it has reached zero but for rounding, so that it
+    /// counts.
+    fn reached_by_impact(
+        &self,
+        monitor: &mut Monitor<R>,
+        event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
+    ) -> Option<R> {
+        if const { !S::HAS_RIGID_CONTACTS } || self.method.steps_over_modes() {
+            return None;
+        }
+        if !self.model().strikes(self.now.t, &self.now.y) {
+            return None;
+        }
+        let scale = self.rounding(event);
+        monitor.reaches(self.value(event), scale).then_some(scale)
+    }
+
+    /// Rounding of an event function at the present instant.
+    fn rounding(&self, event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R) -> R {
+        self.metric.rounding_of(&self.now.y.q, |q| event(self.now.t, q, &self.now.y.qd))
     }
 
     /// An event function at the present instant.
@@ -142,7 +176,7 @@ where
             }
             let trial = self.ahead(t - start, behind.counts, without_open)?;
             let middle = |from: R, to: R| from + half * (to - from);
-            if let Some((found, _)) = reached(&mut monitor.clone(), &trial, event)? {
+            if let Some((found, _)) = reached(&mut monitor.clone(), (&self.metric, &trial), event)? {
                 t = if before < found { found } else { middle(before, trial.next.t) };
                 (behind, shortened, growth) = (trial, true, R::constant(1.0));
             } else {
@@ -212,19 +246,42 @@ pub(super) fn event_failure<R: Real>(why: Unanswered<R>) -> Failure {
     }
 }
 
+/// An event function of a run along the states of a step.
+pub(super) struct WithinStep<'a, R, C, E, const N: usize, const M: usize> {
+    pub(super) metric: &'a Metric<R, N, M>,
+    /// State at a time (s).
+    pub(super) course: C,
+    /// The function of time, coordinates and velocities.
+    pub(super) event: E,
+}
+
+impl<R, C, E, Z, const N: usize, const M: usize> Function<R> for WithinStep<'_, R, C, E, N, M>
+where
+    R: Real,
+    C: FnMut(R) -> IntegratorState<R, N, Z>,
+    E: FnMut(R, &[R; N], &[R; N]) -> R,
+{
+    fn value(&mut self, t: R) -> R {
+        let y = (self.course)(t);
+        (self.event)(t, &y.q, &y.qd)
+    }
+
+    fn rounding(&mut self, t: R) -> Option<R> {
+        let y = (self.course)(t);
+        Some(self.metric.rounding_of(&y.q, |q| (self.event)(t, q, &y.qd)))
+    }
+}
+
 /// Time (s) at which an event is reached on the cubic of a step, and the scale of its function.
 fn reached<R: Real, P, G, Z, const N: usize, const M: usize>(
     monitor: &mut Monitor<R>,
-    ahead: &Ahead<R, P, G, N, M, Z>,
+    (metric, ahead): (&Metric<R, N, M>, &Ahead<R, P, G, N, M, Z>),
     event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
 ) -> Result<Option<(R, R)>, Failure>
 where
     Z: Copy + AsRef<[R]> + AsMut<[R]>,
 {
-    let found = monitor.first(ahead.times(), |t| {
-        let y = ahead.at(t);
-        event(t, &y.q, &y.qd)
-    });
+    let found = monitor.first(ahead.times(), &mut WithinStep { metric, course: |t| ahead.at(t), event });
     let found = found.map_err(event_failure)?;
     Ok(found.map(|reach| (reach.t, reach.scale)))
 }

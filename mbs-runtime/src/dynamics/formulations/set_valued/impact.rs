@@ -15,6 +15,7 @@ use crate::dynamics::formulations::set_valued::impulses::{Impact, impulses};
 use crate::dynamics::formulations::set_valued::shares::Shares;
 use crate::dynamics::formulations::set_valued::{is_off, no_gap, no_rate, of_gap, sticks};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
+use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::linear_algebra::vectors::dot;
@@ -70,6 +71,16 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         Err(FailureKind::Penetration { contact, gap }.at(t.to_f64()))
     }
 
+    /// `true` if a contact closes at `t` (s): its gap is rounding, and it approaches.
+    pub(crate) fn strikes(&self, t: R, y: &IntegratorState<R, N, S::States>) -> bool {
+        if const { !S::HAS_RIGID_CONTACTS } {
+            return false;
+        }
+        let position = self.position(t, y);
+        let (closing, none) = (Closing { model: self, y }, [R::constant(0.0); M]);
+        self.mechanism.set_valued_rows(self.parameters, &position, &y.qd, &y.states, &none, closing)
+    }
+
     /// The state after the impacts of contacts that close at `t` (s); `None` where none does. `solve` gives the rates of a state.
     ///
     /// # Errors
@@ -96,6 +107,48 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             striking,
         )
     }
+}
+
+/// Asks rows whether one of an open contact closes.
+struct Closing<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    model: &'a Model<'a, S, R, N, M>,
+    y: &'a IntegratorState<R, N, S::States>,
+}
+
+impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for Closing<'_, S, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+{
+    type Output = bool;
+
+    fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) -> bool {
+        let modes = S::set_valued_modes(self.model.parameters);
+        rows.iter().zip(modes).any(|(row, mode)| {
+            row.restitution.is_some()
+                && !sticks(mode)
+                && touches(row, &self.y.q, self.model.metric)
+                && approaches(row, &self.y.qd, self.model.metric)
+        })
+    }
+}
+
+/// `true` if the gap of a contact is none but for rounding, or below zero.
+fn touches<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    q: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> bool {
+    row.place <= no_gap(row, q, metric)
+}
+
+/// `true` if the gap of a contact closes faster than by rounding.
+fn approaches<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    qd: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> bool {
+    row.rate < -no_rate(row, qd, metric)
 }
 
 struct Striking<'a, S: Dynamic<R, N, M>, R: Real, F, const N: usize, const M: usize> {
@@ -129,9 +182,9 @@ where
             if !closed {
                 model.require_apart(self.t, q, (index, row))?;
             }
-            let touches = closed || row.place <= no_gap(row, q, model.metric);
-            strikes |= touches && !closed && row.rate < -no_rate(row, &self.y.qd, model.metric);
-            touching.iter_mut().skip(index).take(1).for_each(|touching| *touching = touches);
+            let touched = closed || touches(row, q, model.metric);
+            strikes |= touched && !closed && approaches(row, &self.y.qd, model.metric);
+            touching.iter_mut().skip(index).take(1).for_each(|touching| *touching = touched);
         }
         if !strikes {
             return Ok(None);

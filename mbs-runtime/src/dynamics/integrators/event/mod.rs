@@ -82,6 +82,10 @@ pub trait Dense<R> {
 pub trait Function<R> {
     /// Its value at `t` (s).
     fn value(&mut self, t: R) -> R;
+    /// Its rounding at `t` (s), where more is known than its values tell.
+    fn rounding(&mut self, _t: R) -> Option<R> {
+        None
+    }
     /// Bounds of it between two times (s), where any are known.
     fn enclosure(&mut self, _from: R, _to: R) -> Option<Enclosure<R>> {
         None

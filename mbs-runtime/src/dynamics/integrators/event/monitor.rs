@@ -65,13 +65,20 @@ impl<R: Real> Monitor<R> {
     }
 
     /// Goes on where the function jumps between two steps from the value `before` to `after`, as a velocity does at an impact. A jump over
-    /// zero does not count.
-    pub fn jump(&mut self, before: R, after: R) {
-        let zero = R::constant(0.0);
-        if before != after && before * after <= zero {
-            self.side = (after != zero).then(|| after.sign());
-            self.none = zero;
+    /// zero does not count. A value of at most `rounding` after it has no side.
+    pub fn jump(&mut self, before: R, after: R, rounding: impl FnOnce() -> R) {
+        if before != after && before * after <= R::constant(0.0) {
+            self.none = rounding();
+            self.side = (self.none < after.abs()).then(|| after.sign());
         }
+    }
+
+    /// Goes on at the end of a step, where an impact turns functions of places back: a function whose `value` there is a rounding has
+    /// reached zero. `true` if that counts.
+    pub fn reaches(&mut self, value: R, rounding: R) -> bool {
+        let Some(side) = self.side.filter(|_| value.abs() <= rounding) else { return false };
+        (self.side, self.none) = (None, R::constant(AWAY) * value.abs());
+        self.direction.counts(side)
     }
 
     /// The first time (s) between two times at which `function` reaches zero so that it counts, with its largest absolute value
@@ -82,29 +89,30 @@ impl<R: Real> Monitor<R> {
     pub fn first(
         &mut self,
         (start, end): (R, R),
-        mut function: impl FnMut(R) -> R,
+        function: &mut impl Function<R>,
     ) -> Result<Option<crate::dynamics::integrators::event::Reach<R>>, Unanswered<R>> {
         let mut from = start;
         for _ in 0..MOST_IGNORED {
             let side = match self.side {
                 Some(side) => side,
                 None => {
-                    let none = self.none.max(least(&mut function, (from, end))?);
+                    let none = self.none.max(least(function, (from, end))?);
                     let all = R::constant(f64::INFINITY);
-                    let Some(found) = away(&mut function, (from, end), (none, all))? else { return Ok(None) };
+                    let Some(found) = away(function, (from, end), (none, all))? else { return Ok(None) };
                     from = found.0;
                     found.1
                 }
             };
             self.side = Some(side);
-            let Some(reach) = first_reach(&mut function, (from, end), side, &self.scrutiny)? else {
+            let Some(reach) = first_reach(function, (from, end), side, &self.scrutiny)? else {
                 return Ok(None);
             };
             (from, self.side) = (reach.t, None);
-            self.none = R::constant(AWAY) * function(from).abs();
             if self.direction.counts(side) {
                 return Ok(Some(reach));
             }
+            let none = R::constant(AWAY) * function.value(from).abs();
+            self.none = function.rounding(from).map_or(none, |rounding| rounding.max(none));
         }
         Ok(None)
     }

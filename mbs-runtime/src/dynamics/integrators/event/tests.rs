@@ -106,7 +106,7 @@ fn events(f: impl Fn(f64) -> f64, direction: Direction, step: f64) -> std::vec::
         t = 1.0;
         while from < 1.0 {
             let end = (from + step).min(1.0);
-            if let Some(reach) = monitor.first((from, end), &f).expect("a number") {
+            if let Some(reach) = monitor.first((from, end), &mut &f).expect("a number") {
                 stopped = Some(Stopped::new(reach.t, f(reach.t), reach.scale));
                 found.push(reach.t);
                 t = reach.t;
