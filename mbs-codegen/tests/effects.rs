@@ -9,20 +9,31 @@ use quote::ToTokens;
 use syn::visit::{Visit, visit_item_impl};
 
 include!("../../tests/tests/every_effect/text.rs");
+include!("../../tests/tests/every_effect/rows.rs");
 
 macro_rules! strings {
     ([$($common:tt)*] $($name:ident { $($text:tt)* })*) => {
         /// Bodies that the effects act on.
-        const COMMON: &str = concat!("mechanism Library;", stringify!($($common)*));
+        pub const COMMON: &str = concat!("mechanism Library;", stringify!($($common)*));
 
         /// One a kind of force, each with names of its own.
-        const EFFECTS: [(&str, &str); COUNT] = [$((stringify!($name), stringify!($($text)*))),*];
+        pub const EFFECTS: [(&str, &str); COUNT] = [$((stringify!($name), stringify!($($text)*))),*];
 
         /// Number of effects.
         const COUNT: usize = [$(stringify!($name)),*].len();
     };
 }
 every_effect!(strings);
+
+/// Effects with rows.
+mod rows {
+    macro_rules! strings {
+        ([] $($name:ident { $($text:tt)* })*) => {
+            pub const EFFECTS: &[(&str, &str)] = &[$((stringify!($name), stringify!($($text)*))),*];
+        };
+    }
+    every_row!(strings);
+}
 
 /// Each so many of the effects is left out once: all of them take half a minute.
 const STRIDE: usize = if cfg!(feature = "long") { 1 } else { 4 };
@@ -87,16 +98,20 @@ fn expanded(text: &str) -> syn::File {
 
 #[test]
 fn a_scene_without_an_effect_is_the_text_in_which_it_was_never_written() {
-    let others = |left_out: &'static str| EFFECTS.iter().filter(move |(name, _)| *name != left_out);
-    let left_out = || EFFECTS.iter().step_by(STRIDE).map(|(name, _)| *name);
-    let scenes: String = left_out()
-        .map(|name| scene(&format!("Without_{name}"), others(name).map(|(name, _)| *name)))
-        .collect();
-    let whole = expanded(&text(&EFFECTS, &format!("{}{scenes}", whole())));
+    let effects = [&EFFECTS[..], rows::EFFECTS].concat();
+    let others = |left_out: &str| -> Vec<(&'static str, &'static str)> {
+        effects.iter().filter(|(name, _)| *name != left_out).copied().collect()
+    };
+    // Those with rows come last.
+    let left_out = || effects.iter().rev().step_by(STRIDE).map(|(name, _)| *name);
+    let names = |effects: Vec<(&'static str, &'static str)>| effects.into_iter().map(|(name, _)| name);
+    let scenes: String =
+        left_out().map(|name| scene(&format!("Without_{name}"), names(others(name)))).collect();
+    let all = scene("Whole", names(effects.clone()));
+    let whole = expanded(&text(&effects, &format!("{all}{scenes}")));
     for name in left_out() {
         let without = items(&whole, Some(&format!("Without_{name}")));
-        let rest: Vec<(&str, &str)> = others(name).copied().collect();
-        let never_written = items(&expanded(&text(&rest, "")), None);
+        let never_written = items(&expanded(&text(&others(name), "")), None);
         assert_eq!(without.len(), never_written.len(), "{name}");
         for (key, item) in &never_written {
             assert!(without.get(key) == Some(item), "`{key}` without `{name}`");

@@ -62,7 +62,7 @@ impl Visit<'_> for Found<'_> {
                 other => panic!("{}", other.to_token_stream()),
             };
             // The text, the scene's name, and copies of the whole struct.
-            if !["SOURCE", "SCENE", "Lane", "lane", "Group", "group"].contains(&key.as_str()) {
+            if !["SOURCE", "SCENE", "Lane", "lane", "Group", "group", "enclosed"].contains(&key.as_str()) {
                 self.items.insert(format!("{name}::{key}"), item.to_token_stream().to_string());
             }
         }

@@ -57,6 +57,38 @@ pub fn symbols(program_file: &Path) -> Vec<(char, String)> {
     listed.lines().filter_map(symbol).collect()
 }
 
+/// The functions of a linked program: name, and size in bytes.
+///
+/// # Panics
+/// As [`symbols`].
+pub fn functions(program_file: &Path) -> Vec<(String, usize)> {
+    let listed = output(program("NM", "nm").arg("--format=posix").arg(program_file), BINUTILS);
+    let listed = listed.unwrap_or_else(|complaint| panic!("{complaint}"));
+    let function = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let (name, kind, size) = (words.first()?, words.get(1)?, words.get(3)?);
+        let size = usize::from_str_radix(size, 16).ok()?;
+        ["t", "T"].contains(kind).then(|| ((*name).to_owned(), size))
+    };
+    listed.lines().filter_map(function).collect()
+}
+
+/// The sections of an archive that the functions are in which `wanted` picks by name. The compiler gives functions that are alike one
+/// section, of which [`disassembly`] knows one name.
+///
+/// # Panics
+/// As [`disassembly`].
+pub fn sections(file: &Path, wanted: fn(&str) -> bool) -> BTreeMap<String, String> {
+    let listed = output(program("OBJDUMP", "objdump").arg("--syms").arg(file), BINUTILS);
+    let listed = listed.unwrap_or_else(|complaint| panic!("{complaint}"));
+    let section = |line: &str| {
+        let (head, tail) = line.split_once('\t')?;
+        let (section, name) = (head.split_whitespace().last()?, tail.split_whitespace().last()?);
+        (head.contains(" F ") && wanted(name)).then(|| (name.to_owned(), section.to_owned()))
+    };
+    listed.lines().filter_map(section).collect()
+}
+
 /// Functions of an object file or archive that `wanted` picks by name, with their instructions as bytes. An instruction is
 /// followed by the reference that the linker resolves in it: offset within the function, kind, and target. The target is
 /// left out if the compiler's naming hides it.

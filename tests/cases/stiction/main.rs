@@ -9,6 +9,7 @@ mod contacts;
 mod driven;
 mod fixed_implicit;
 mod implicit;
+mod neighbours;
 mod pendulum;
 mod rests;
 mod slope;

@@ -29,7 +29,7 @@ const EXPORTS: [&str; 14] = [
 
 /// Further ones with the feature `single` of the program.
 #[cfg(feature = "long")]
-const SINGLE: [&str; 7] = [
+const SINGLE: [&str; 8] = [
     "proof_batch_f32",
     "proof_cam_f32",
     "proof_engine_f32",
@@ -37,6 +37,7 @@ const SINGLE: [&str; 7] = [
     "proof_hammer_f32",
     "proof_parallelogram_f32",
     "proof_platform_f32",
+    "proof_sleep",
 ];
 
 /// The only symbols that may come from elsewhere.

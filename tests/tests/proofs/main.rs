@@ -4,5 +4,7 @@
 mod freestanding;
 mod from_c;
 #[cfg(feature = "long")]
+mod left_out;
+#[cfg(feature = "long")]
 mod panic_free;
 mod scene_code;

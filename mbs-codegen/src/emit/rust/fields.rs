@@ -198,8 +198,7 @@ pub fn enclosed(
     target: &TokenStream,
     (model, m): (&Model, usize),
 ) -> TokenStream {
-    let contacts = model.dynamics.as_ref().is_some_and(|dynamics| !dynamics.contacts.is_empty());
-    let is_asked = contacts || !model.limits.is_empty();
+    let is_asked = model.dynamics.is_some() || !model.limits.is_empty();
     if !is_asked || !model.can_be_enclosed() {
         return TokenStream::new();
     }

@@ -1,5 +1,6 @@
 //! Small motions about a state: M̄ s̈ + C̄ ṡ + K̄ s = 0 in as many coordinates s as there are degrees of freedom.
 
+use crate::dynamics::analyses::held_variation::{AlongMotion, FreeMotions};
 use crate::dynamics::analyses::modes::FreeOfHeld;
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::formulations::variation::{FreeMotion, Variation};
@@ -7,10 +8,10 @@ use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::states::require_no_states;
 use crate::dynamics::linear_systems::tangent::Tangent;
-use crate::dynamics::model::Model;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::require_smooth;
 use crate::dynamics::model::metric::Metric;
+use crate::dynamics::model::{Model, Solved};
 use crate::failure::Failure;
 use crate::linear_algebra::vectors::{dot, times};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
@@ -78,8 +79,8 @@ pub struct Linearization<R, const N: usize> {
 /// [`NonFinite`](crate::FailureKind::NonFinite); [`SingularMass`](crate::FailureKind::SingularMass) where a free motion moves no mass; [`StatesUnknown`](crate::FailureKind::StatesUnknown) for a text with
 /// first-order states, see [`linearize_with_states`]; [`NotSmooth`](crate::FailureKind::NotSmooth);
 /// [`SetValuedEdge`](crate::FailureKind::SetValuedEdge) where a rigid contact touches without a force or a friction is at its limit;
-/// [`SetValuedForce`](crate::FailureKind::SetValuedForce) about a state that moves while one holds, and
-/// [`EventOfMotion`](crate::FailureKind::EventOfMotion), where the state is not one of the modes that it would start in.
+/// [`SetValuedForce`](crate::FailureKind::SetValuedForce) about a state that moves while a friction slides on a rigid contact;
+/// this and [`EventOfMotion`](crate::FailureKind::EventOfMotion) where the state is not one of the modes that it would start in.
 pub fn linearize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
@@ -137,7 +138,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     independent: &[u16],
 ) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
     require_smooth::<S, R, N, M>()?;
-    let (zero, mut parameters) = (R::constant(0.0), mechanism.parameters());
+    let mut parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, t, &y.q);
     let model = Model::of_states(mechanism, &parameters, &metric);
     model.check(t, y)?;
@@ -147,30 +148,42 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         (parameters, judged) = (modes, Some(rates));
     }
     let model = Model::of_states(mechanism, &parameters, &metric);
-    let position = model.position(t, y);
+    about_in_modes(&model, (t, y, qdd), (lambda, judged.as_ref()), independent)
+}
+
+/// The matrices in the modes of the model, whose parameters have the forces of rows that hold. `judged`: its rates, of a text with modes.
+pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, y, qdd): (R, &IntegratorState<R, N, S::States>, &[R; N]),
+    (lambda, judged): (&[R; M], Option<&Solved<R, N, M, S::States>>),
+    independent: &[u16],
+) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
+    let (mechanism, parameters, metric) = (model.mechanism, model.parameters, model.metric);
+    let (zero, position) = (R::constant(0.0), model.position(t, y));
     if judged.is_some() {
         model.require_modes_of(t, y, (qdd, lambda))?;
     }
-    let tangent = Tangent::of(&model, &position, y, qdd, lambda);
-    let slopes = mechanism.state_slopes(&parameters, &position, &y.qd, &y.states, lambda);
-    let phi_q = mechanism.phi_q(&parameters, &position);
-    let system = System::new(&tangent.mass, &phi_q, &metric);
+    let tangent = Tangent::of(model, &position, y, qdd, lambda);
+    let slopes = mechanism.state_slopes(parameters, &position, &y.qd, &y.states, lambda);
+    let phi_q = mechanism.phi_q(parameters, &position);
+    let system = System::new(&tangent.mass, &phi_q, metric);
     let factors = system.factorize_rank_revealing(singular::DEPENDENT.of(), S::COORDINATES, t)?;
     let scaled = |rates: &[R; N]| {
         let rates = rates.iter().zip(&metric.coordinates);
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
     };
     let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
-    if let Some(rates) = &judged.filter(|_| !S::SET_VALUED.is_empty()) {
-        let free = FreeOfHeld { model: &model, t, y, rates, basis: (basis, freedom) };
+    if let Some(rates) = judged.filter(|_| !S::SET_VALUED.is_empty()) {
+        let free = FreeOfHeld { model, t, y, rates, basis: (basis, freedom) };
         (basis, freedom) =
-            mechanism.set_valued_rows(&parameters, &position, &y.qd, &y.states, lambda, free)?;
+            mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, free)?;
     }
     let slow = scaled(&y.qd) <= forces::AT_REST.of();
-    if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(&model, t, y, (&position, qdd), lambda)?) {
-        model.require_nothing_held(t)?;
-        let variation = Variation::of(&model, (t, y, qdd), &position, independent)?;
-        let (linear, rates) = moving(&tangent, &variation);
+    if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(model, t, y, (&position, qdd), lambda)?) {
+        let variation = &Variation::of(model, (t, y, qdd), &position, independent)?;
+        let along = AlongMotion { model, t, y, qdd, lambda, variation, preferred: independent };
+        let motions = mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, along)?;
+        let (linear, rates) = moving(&tangent, &motions);
         return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &rates))));
     }
     let reduced = |matrix: &[[R; N]; N]| reduced(&basis, &basis.map(|right| times(matrix, &right)), freedom);
@@ -180,7 +193,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         mass: reduced(&tangent.mass),
         damping: reduced(&tangent.damping),
         stiffness: reduced(&tangent.stiffness),
-        frozen: has_moving_states(&model, &position, y, (slopes.as_ref(), lambda)),
+        frozen: has_moving_states(model, &position, y, (slopes.as_ref(), lambda)),
         independent: [false; N],
     };
     Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &[[zero; N]; N]))))
@@ -251,15 +264,15 @@ where
 }
 
 /// The matrices about a state that moves, and Ṙ, column by column.
-fn moving<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+fn moving<R: Real, const N: usize>(
     tangent: &Tangent<R, N>,
-    variation: &Variation<'_, S, R, N, M>,
+    (motions, independent): &FreeMotions<R, N>,
 ) -> (Linearization<R, N>, [[R; N]; N]) {
     let (one, none) = (R::constant(1.0), [[R::constant(0.0); N]; N]);
     let (mut basis, mut rates, mut mass, mut damping, mut stiffness) = (none, none, none, none, none);
     let mut freedom = 0;
-    for (index, _) in variation.independent.iter().enumerate().filter(|(_, independent)| **independent) {
-        let FreeMotion { place, rate, acceleration } = variation.motion(index);
+    for (motion, _) in motions.iter().zip(independent).filter(|(_, independent)| **independent) {
+        let FreeMotion { place, rate, acceleration } = *motion;
         let columns = [&mut basis, &mut rates, &mut mass, &mut damping, &mut stiffness]
             .map(|columns| columns.get_mut(freedom));
         if let [Some(basis), Some(turning), Some(mass), Some(damping), Some(stiffness)] = columns {
@@ -279,7 +292,7 @@ fn moving<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         stiffness: reduced(&basis, &stiffness, freedom),
         basis,
         frozen: true,
-        independent: variation.independent,
+        independent: *independent,
     };
     (linear, rates)
 }

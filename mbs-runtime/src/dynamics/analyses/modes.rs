@@ -89,18 +89,6 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             (None, None) => Ok(()),
         }
     }
-
-    /// Fails with the first set-valued row that holds: about a state that moves it has no linear equation here.
-    ///
-    /// # Errors
-    /// [`FailureKind::SetValuedForce`].
-    pub(super) fn require_nothing_held(&self, t: R) -> Result<(), Failure> {
-        let held = S::SET_VALUED.iter().zip(S::set_valued_modes(self.parameters));
-        match held.filter(|(_, mode)| sticks(mode)).map(|(row, _)| row).next() {
-            Some(row) => Err(FailureKind::SetValuedForce { row }.at(t.to_f64())),
-            None => Ok(()),
-        }
-    }
 }
 
 /// Modes of rows that touch and do not move.

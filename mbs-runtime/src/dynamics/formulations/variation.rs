@@ -12,11 +12,11 @@ use crate::tolerances::singular;
 
 /// Weight of a preferred independent coordinate in the choice of the dependent ones. They leave a digit of six to one that is
 /// not preferred, and are dependent only where nothing else is.
-const PREFERRED: f64 = 1e-6;
+pub(crate) const PREFERRED: f64 = 1e-6;
 
 /// Weights of f(±h), f(±2h), f(±3h) in 60 h f′: the error is h⁶ f⁽⁷⁾/140.
 /// Source: Fornberg 1988, table 1.
-const DIFFERENCE: [(f64, f64); 3] = [(1.0, 45.0), (2.0, -9.0), (3.0, 1.0)];
+pub(crate) const DIFFERENCE: [(f64, f64); 3] = [(1.0, 45.0), (2.0, -9.0), (3.0, 1.0)];
 
 /// A motion that the rows leave free: the variation r of all coordinates with one of the independent ones, and its rates.
 #[derive(Clone, Copy, Debug)]
@@ -130,7 +130,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
     }
 
     /// Largest component in the metric.
-    fn length(&self, x: &[R; N]) -> R {
+    pub(crate) fn length(&self, x: &[R; N]) -> R {
         let parts = x.iter().zip(&self.model.metric.coordinates).map(|(x, scale)| (*x / *scale).abs());
         parts.fold(R::constant(0.0), |largest, part| largest.max(part))
     }

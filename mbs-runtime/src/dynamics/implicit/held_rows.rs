@@ -1,6 +1,6 @@
 //! Frictions that stick and closed contacts in implicit steps: rows of the positions at a step's end, beside the constraints.
 
-use crate::dynamics::formulations::set_valued::Holding;
+use crate::dynamics::formulations::set_valued::holding::Holding;
 use crate::dynamics::formulations::unstabilized::Unstabilized;
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::instant::Instant;

@@ -113,7 +113,7 @@ where
     }
 
     /// The length (s) of a step of `h` (s) as times have it, with the rounding of earlier ones, and its own rounding.
-    fn length(&self, h: R) -> (R, R) {
+    pub(super) fn length(&self, h: R) -> (R, R) {
         let (zero, from) = (R::constant(0.0), self.now.t);
         let wanted = if self.clock.0 == from { h + self.clock.1 } else { h };
         let length = (from + wanted) - from;

@@ -12,6 +12,7 @@ pub(crate) mod fixed_run_events;
 pub(crate) mod graded_steps;
 pub(crate) mod modes;
 pub(crate) mod reading;
+pub(crate) mod sleep;
 
 use crate::dynamics::equilibrium::consistent_start;
 use crate::dynamics::equilibrium::consistent_start::MovedStart;

@@ -3,6 +3,8 @@
 use core::hint::black_box;
 
 use mbs_runtime::Lanes;
+#[cfg(feature = "single")]
+use proof_subjects::exercise_sleep;
 use proof_subjects::{
     FourBar, Hammer, Parallelogram, Platform, Sledge, Start, cam, engine, exercise_batch, exercise_contacts,
     exercise_dynamics, exercise_emitted, exercise_functions, exercise_laws, exercise_masses, exercise_modes,
@@ -126,6 +128,14 @@ pub extern "C" fn proof_sledge() -> bool {
     exercise_modes(black_box(Sledge::<f64>::default())).is_ok()
 }
 
+/// Simulations side by side that sleep, and the bounds that they do so by.
+#[cfg(feature = "single")]
+#[unsafe(no_mangle)]
+pub extern "C" fn proof_sleep() -> bool {
+    exercise_sleep(black_box(Sledge::<f64>::default())).is_ok()
+        & exercise_sleep(black_box(Sledge::<f32>::default())).is_ok()
+}
+
 /// Motion laws and splines, fits included; false where one fails.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_drivers() -> bool {
@@ -145,6 +155,7 @@ pub extern "C" fn proof_tape() -> bool {
 fn single() -> bool {
     proof_four_bar_f32()
         & proof_platform_f32()
+        & proof_sleep()
         & proof_parallelogram_f32()
         & proof_cam_f32()
         & proof_batch_f32()

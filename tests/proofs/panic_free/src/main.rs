@@ -9,7 +9,7 @@ use mbs_runtime::{Failure, Kinematic, Lanes, Real, Scalar};
 use proof_subjects::{
     FourBar, Hammer, Parallelogram, Platform, Sledge, Start, cam, engine, exercise_batch, exercise_contacts,
     exercise_dynamics, exercise_emitted, exercise_functions, exercise_laws, exercise_masses, exercise_modes,
-    exercise_modes_further, exercise_solvers, exercise_splines, exercise_tape,
+    exercise_modes_further, exercise_sleep, exercise_solvers, exercise_splines, exercise_tape,
 };
 
 fn emitted<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize>(mechanism: S) {
@@ -61,6 +61,8 @@ fn dynamics() -> Result<(), Failure> {
     exercise_contacts(Hammer::<f32>::default())?;
     exercise_modes(Sledge::<f64>::default())?;
     exercise_modes(Sledge::<f32>::default())?;
+    exercise_sleep(Sledge::<f64>::default())?;
+    exercise_sleep(Sledge::<f32>::default())?;
     exercise_modes_further(Sledge::<f64>::default())?;
     exercise_modes_further(Sledge::<f32>::default())?;
     exercise_dynamics(engine::<f64>())?;

@@ -5,7 +5,7 @@ use core::hint::black_box;
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Direction, DormandPrince5, DormandPrince8, Embedded, Explicit,
     Extrapolated, Formulation, GeneralizedAlpha, Method, MoreauJean, Penalty, Projection, Radau5,
-    RungeKutta4, SemiImplicitEuler, Simulation, Unstabilized, VelocityTransformation,
+    RungeKutta4, SemiImplicitEuler, Simulation, Simulations, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure, Partitioned, Real, Scalar};
 
@@ -117,6 +117,24 @@ where
     fixed(mechanism, Explicit::new(Radau5, Projection::default()))?;
     adaptive(mechanism, Explicit::new(Radau5, Projection::default()))?;
     adaptive(mechanism, Explicit::new(DormandPrince8, VelocityTransformation))
+}
+
+/// Simulations side by side, of which those at rest sleep.
+///
+/// # Errors
+/// Those of the start.
+pub fn exercise_sleep<S, R: Real, const N: usize, const M: usize>(mechanism: S) -> Result<(), Failure>
+where
+    S: Dynamic<R, N, M> + Copy,
+{
+    let method = Explicit::new(DormandPrince5, Projection::default());
+    let (h, end) = (black_box(R::constant(1e-3)), black_box(R::constant(0.1)));
+    let start = entry::start_from_text(black_box(mechanism), method, black_box(R::constant(0.0)))?;
+    let mut lanes = Simulations::new([start, start]);
+    black_box(entry::step_lanes(&mut lanes, h).map(|step| step.is_ok()));
+    black_box(entry::advance_lanes_to(&mut lanes, end).map(|step| step.is_ok()));
+    black_box(entry::wake(&mut lanes, black_box(0), h));
+    Ok(())
 }
 
 /// Steps of fixed size.

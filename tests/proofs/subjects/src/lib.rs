@@ -21,6 +21,7 @@ pub use cam::{Cam, cam};
 pub use drivers::{exercise_laws, exercise_splines};
 pub use dynamics::{
     exercise_contacts, exercise_dynamics, exercise_masses, exercise_modes, exercise_modes_further,
+    exercise_sleep,
 };
 pub use engine::{Engine, engine};
 pub use exercise::{Start, exercise_batch, exercise_emitted, exercise_functions, exercise_solvers};

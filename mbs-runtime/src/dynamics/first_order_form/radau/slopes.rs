@@ -2,7 +2,7 @@
 
 use crate::dynamics::first_order_form::equations::{Equations, Moving};
 use crate::dynamics::formulations::projection::correction_factors;
-use crate::dynamics::formulations::set_valued::Holding;
+use crate::dynamics::formulations::set_valued::holding::Holding;
 use crate::dynamics::integrators::equation::Collocation;
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::Factors;

@@ -8,6 +8,7 @@
 //! Source: Glocker 2001, Set-Valued Force Laws, ch. 3 and 5.
 
 pub(crate) mod decide;
+pub(crate) mod holding;
 pub(crate) mod impact;
 pub(crate) mod impulses;
 mod modes;
@@ -15,6 +16,7 @@ pub(crate) mod shares;
 pub(crate) mod slips;
 
 use crate::dynamics::formulations::projection::correction_factors;
+use crate::dynamics::formulations::set_valued::holding::Holding;
 use crate::dynamics::formulations::set_valued::shares::{Shares, within_limits};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::metric::Metric;
@@ -304,53 +306,6 @@ where
             holding.hold(rows, found, &right)
         };
         self.model.balanced_freely(self.standing, self.position, self.at, self.lambda, held)
-    }
-}
-
-/// A system's answers x, λ (N, M) to unit forces of rows that hold, and W of them.
-pub(crate) struct Holding<R: Real, const N: usize, const M: usize, const K: usize> {
-    answers: [([R; N], [R; M]); K],
-    shares: Shares<R, K>,
-}
-
-impl<R: Real, const N: usize, const M: usize, const K: usize> Holding<R, N, M, K> {
-    /// Those of `rows` that hold in `modes` (K), by the answers of `solve` to forces (N).
-    #[inline(always)]
-    pub(crate) fn of<S: Dynamic<R, N, M>>(
-        rows: &[SetValuedRow<R, N>; K],
-        modes: &[SetValuedMode<R>],
-        mut solve: impl FnMut(&[R; N]) -> ([R; N], [R; M]),
-    ) -> Self {
-        let zero = R::constant(0.0);
-        let mask: [bool; K] = mask(modes);
-        let mut answers = [([zero; N], [zero; M]); K];
-        for (index, (answer, _)) in answers.iter_mut().zip(&mask).enumerate().filter(|(_, (_, held))| **held)
-        {
-            *answer = solve(&column::<S, R, N, M, K>(rows, modes, index));
-        }
-        let shares = Shares::of(rows, &mask, |row, column| {
-            answers.get(column).map_or(zero, |answer| dot(&row.gradient, &answer.0))
-        });
-        Holding { answers, shares }
-    }
-
-    /// A solution x, λ (N, M) of the system with the forces added that make J x = `right` (K) of the rows that hold.
-    #[inline(always)]
-    pub(crate) fn hold(
-        &self,
-        rows: &[SetValuedRow<R, N>; K],
-        (mut x, mut lambda): ([R; N], [R; M]),
-        right: &[R; K],
-    ) -> ([R; N], [R; M]) {
-        let mut open = [R::constant(0.0); K];
-        for ((open, row), right) in open.iter_mut().zip(rows).zip(right) {
-            *open = *right - dot(&row.gradient, &x);
-        }
-        for (share, answer) in self.shares.solve(&open).iter().zip(&self.answers) {
-            x = x.plus(*share, &[1.0], [&answer.0]);
-            lambda = lambda.plus(*share, &[1.0], [&answer.1]);
-        }
-        (x, lambda)
     }
 }
 

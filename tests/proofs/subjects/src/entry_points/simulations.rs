@@ -2,7 +2,7 @@
 
 use mbs_runtime::dynamics::{
     Balance, Determinacy, Direction, Driven, Embedded, Equilibrium, Explicit, Formulation, Instant, Method,
-    MethodWarning, Simulation, Tolerance, WithStates,
+    MethodWarning, Simulation, Simulations, Tolerance, WithStates,
 };
 use mbs_runtime::{Dynamic, Failure, Real};
 
@@ -69,6 +69,27 @@ entry_points! {
         simulation: Simulation<S, Explicit<I, F>, R, N, M>, tolerance: f64, step: R,
     ) -> Simulation<S, Explicit<I, F>, R, N, M> {
         simulation.with_tolerance(Tolerance::new(tolerance)).with_largest_step(step)
+    }
+    /// A step of simulations side by side, of which some sleep.
+    fn step_lanes[S: Dynamic<R, N, M>, X: Method<S, R, N, M>, R: Real, const N: usize, const M: usize](
+        lanes: &mut Simulations<S, X, R, 2, N, M>, h: R,
+    ) -> [Result<(), Failure>; 2] {
+        lanes.step(h)
+    }
+    /// A change of a variable that wakes one of them, and the forces of another one.
+    fn wake[S: Dynamic<R, N, M>, X: Method<S, R, N, M>, R: Real, const N: usize, const M: usize](
+        lanes: &mut Simulations<S, X, R, 2, N, M>, lane: usize, value: R,
+    ) -> (Option<bool>, [Option<R>; 2], Option<R>) {
+        let changed = lanes.change(lane, |mechanism| mechanism.set(0, value));
+        (changed, lanes.asleep_until(), lanes.read(1).and_then(Result::ok).map(Simulation::t))
+    }
+    /// Adaptive steps of simulations side by side.
+    fn advance_lanes_to[
+        S: Dynamic<R, N, M>, I: Embedded, F: Formulation<S, R, N, M>, R: Real, const N: usize, const M: usize
+    ](
+        lanes: &mut Simulations<S, Explicit<I, F>, R, 2, N, M>, until: R,
+    ) -> [Result<(), Failure>; 2] {
+        lanes.advance_to(until)
     }
     /// Adaptive steps.
     fn advance_to[

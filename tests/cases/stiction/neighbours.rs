@@ -1,0 +1,166 @@
+//! Small motions about a motion on which rows hold, against closed forms and the same motion in coordinates without these rows.
+
+use mbs_runtime::dynamics::{
+    DormandPrince8, Explicit, Linearization, Projection, Simulation, Tolerance, linearize_in,
+};
+use mbs_runtime::{Dynamic, FailureKind, mechanism};
+
+type Run<S, const N: usize, const M: usize> = Simulation<S, Explicit<DormandPrince8, Projection>, f64, N, M>;
+
+fn started<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(mechanism: S) -> Run<S, N, M> {
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let run = Simulation::start_from_text(mechanism, method, 0.0).expect("it starts");
+    run.with_tolerance(Tolerance::new(1e-13))
+}
+
+fn about<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    run: &Run<S, N, M>,
+    independent: &[u16],
+) -> Linearization<f64, N> {
+    let state = (run.q(), run.qd(), run.qdd());
+    linearize_in(run.mechanism(), run.t(), state, run.lambda(), independent).expect("it is regular")
+}
+
+fn entries<const N: usize>(small: &Linearization<f64, N>) -> [f64; 3] {
+    assert!(small.freedom == 1 && small.frozen, "{small:?}");
+    [small.mass, small.damping, small.stiffness].map(|matrix| matrix[0][0])
+}
+
+fn alike(one: [f64; 3], other: [f64; 3], bound: f64) {
+    let size = one.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()));
+    let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+    println!("{one:?}: off by {:.1e}", apart / size);
+    assert!(apart < bound * size, "{one:?} {other:?}");
+}
+
+mechanism! {
+    /// A damped bob on a shaken pivot, in its angle.
+    mechanism ByAngle;
+    coord phi: rad = -1.2;
+    let bob = [0.2m*sin(3*t/1s), 0.1m*cos(5*t/1s)] + 0.8m*unit(phi);
+    body mass { mass: 2, com: bob }
+    gravity weight { acceleration: [0, -9.81] }
+    force drag: -0.7[N*s/m]*der(bob) on bob;
+    start phi = -1.2 rate -1;
+}
+
+mechanism! {
+    /// The same in a shaken bowl that it presses on: one row ties the angle to the place, the contact holds the other.
+    mechanism InBowl;
+    coord P: [m; 2] = [0.29, -0.65];
+    coord phi: rad = -1.2;
+    let arm = P - [0.2m*sin(3*t/1s), 0.1m*cos(5*t/1s)];
+    body mass { mass: 2, com: P }
+    gravity weight { acceleration: [0, -9.81] }
+    force drag: -0.7[N*s/m]*der(P) on P;
+    constraint direction { cross(unit(phi), arm) == 0 [m]; }
+    contact bowl { gap: 0.8m - norm(arm), restitution: 0 }
+    start phi = -1.2 rate -1;
+    start P = [0.8*cos(-1.2), 0.1 + 0.8*sin(-1.2)] rate [0.6 + 0.8*sin(-1.2), -0.8*cos(-1.2)];
+}
+
+#[test]
+fn a_contact_that_holds_has_the_neighbours_of_a_bob_on_a_rod() {
+    let (mut angle, mut bowl) = (started(ByAngle::<f64>::default()), started(InBowl::<f64>::default()));
+    for t in [0.2, 0.7, 1.3] {
+        angle.advance_to(t).expect("it moves");
+        bowl.advance_to(t).expect("it moves");
+        assert!((angle.q()[0] - bowl.q()[2]).abs() < 1e-10, "it has left the bowl");
+        let small = about(&bowl, &[2]);
+        assert_eq!(small.independent, [false, false, true]);
+        alike(entries(&about(&angle, &[])), entries(&small), 1e-11);
+    }
+}
+
+mechanism! {
+    /// A bob on a carriage that rides on a shaken belt.
+    mechanism OnBelt;
+    coord x: m = 0;
+    coord P: [m; 2] = [0.29, -0.75];
+    coord phi: rad = -1.2;
+    body carriage { mass: 3, com: [x, 0] }
+    body mass { mass: 2, com: P }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint rod { P == [x, 0.1m*cos(5*t/1s)] + 0.8m*unit(phi); }
+    friction belt { along: x - 0.2m*sin(3*t/1s), normal: 500N, coefficient: 0.3, sticks: 0.4 }
+    force drag: -0.7[N*s/m]*der(P) on P;
+    start phi = -1.2 rate -1;
+    start x = 0 rate 0.6;
+}
+
+#[test]
+fn a_friction_that_sticks_to_a_moving_belt_has_the_neighbours_of_a_bob_on_it() {
+    let (mut angle, mut belt) = (started(ByAngle::<f64>::default()), started(OnBelt::<f64>::default()));
+    for t in [0.2, 0.7, 1.3] {
+        angle.advance_to(t).expect("it moves");
+        belt.advance_to(t).expect("it moves");
+        assert!((angle.q()[0] - belt.q()[3]).abs() < 1e-10, "it has slipped");
+        let small = about(&belt, &[3]);
+        assert_eq!(small.independent, [false, false, false, true]);
+        alike(entries(&about(&angle, &[])), entries(&small), 1e-11);
+        // Without a wish the belt's row still leaves one motion.
+        assert!(about(&belt, &[]).freedom == 1);
+    }
+}
+
+mechanism! {
+    /// A bead in a bowl, in the coordinates of its place.
+    mechanism Bead;
+    coord p: [m; 2] = [0.3, -0.4];
+    body bead { mass: 2, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    contact bowl { gap: 0.5m - norm(p), restitution: 0 }
+    start p = [0.3, -0.4] rate [0.8, 0.6];
+}
+
+#[test]
+fn a_bead_in_a_bowl_has_the_neighbours_of_the_closed_form() {
+    let mut run = started(Bead::<f64>::default());
+    for t in [0.0, 0.1, 0.2] {
+        run.advance_to(t).expect("it moves");
+        let small = about(&run, &[0]);
+        assert_eq!(small.independent, [true, false]);
+        // With the angle a: ä = −(g/r) cos a, and x = r cos a gives δa = c δx with c = −1/(r sin a).
+        let (m, g, r) = (2.0, 9.81, 0.5);
+        let ([x, y], [vx, vy]) = (*run.q(), *run.qd());
+        let (cosine, sine) = (x / r, y / r);
+        let speed = (x * vy - y * vx) / (r * r);
+        let growth = -g / r * cosine;
+        let c = -1.0 / (r * sine);
+        let rate = cosine * speed / (r * sine * sine);
+        let bend = (sine * (cosine * growth - sine * speed * speed) - 2.0 * cosine * cosine * speed * speed)
+            / (r * sine * sine * sine);
+        let expected =
+            [m * r * r * c * c, 2.0 * m * r * r * c * rate, m * r * r * c * (bend - g / r * sine * c)];
+        alike(expected, entries(&small), 1e-11);
+    }
+}
+
+mechanism! {
+    /// A disk that slides on a rough floor, and one that rolls.
+    mechanism Disk;
+    param mu: 1 = 0.2;
+    coord p: [m; 2] = [0, 0.1];
+    coord a: rad = 0;
+    body disk { mass: 4, com: p, inertia: 0.02, angle: a }
+    gravity weight { acceleration: [0, -9.81] }
+    tsda spring { from: [-1, 0.1], to: p, stiffness: 60, length: 1 }
+    contact floor { gap: p[1] - 0.1m, restitution: 0 }
+    friction rub { along: p[0] + 0.1m*a, normal: normal(floor), coefficient: mu, sticks: mu }
+    start p = [0, 0.1] rate [0.1, 0];
+    start a = 0 rate -1;
+}
+
+#[test]
+fn a_disk_that_rolls_has_neighbours_and_one_that_slides_on_its_contact_has_none() {
+    let rolls = started(Disk::<f64>::default());
+    let small = about(&rolls, &[0]);
+    // Half its mass again, and the spring.
+    alike([6.0, 0.0, 60.0], entries(&small), 1e-9);
+    let mut slides = started(Disk { mu: 1e-3 });
+    slides.advance_to(0.4).expect("it slides");
+    let state = (slides.q(), slides.qd(), slides.qdd());
+    let failure =
+        linearize_in(slides.mechanism(), slides.t(), state, slides.lambda(), &[]).expect_err("it slides");
+    assert!(matches!(failure.kind, FailureKind::SetValuedForce { row } if row.name == "rub"), "{failure}");
+}
