@@ -89,14 +89,20 @@ impl<T: Scalar> Single<T> {
         match self {
             Single::Angle { a, c } => {
                 let (found, real) = on_unit_circle(a, -*c);
-                Roots { x: found.map(|e| [same_turn(e[1].atan2(e[0]), near[0])]), real }
+                let at = |e: &[T; 2]| [same_turn(e[1].atan2(e[0]), near[0])];
+                Roots { x: both(&found, at), real }
             }
             Single::Length { row: [w, u, c] } => {
                 let (lengths, real) = quadratic(*w, T::constant(0.5) * *u, *c, c.abs());
-                Roots { x: lengths.map(|x| [x]), real }
+                Roots { x: both(&lengths, |x| [*x]), real }
             }
         }
     }
+}
+
+/// `of` each of two items.
+fn both<X, Y>([first, second]: &[X; 2], of: impl Fn(&X) -> Y) -> [Y; 2] {
+    [of(first), of(second)]
 }
 
 /// The two unit vectors e with `line` · e = `level`.
@@ -118,22 +124,22 @@ fn bars<T: Scalar>(
     unknowns: &[[f64; 2]; 2],
     near: &[T; 2],
 ) -> Roots<T, 2> {
-    let [first, second] = columns(a).map(|column| solved(b, &column));
+    let [first, second] = both(&columns(a), |column| solved(b, column));
     let rest = solved(b, c);
     let two = T::constant(2.0);
     let line = [two * dot(&first, &rest), two * dot(&second, &rest)];
     let level = T::constant(1.0) - dot(&first, &first) - dot(&rest, &rest);
     let (found, real) = on_unit_circle(&line, level);
-    let at = |e: [T; 2]| {
+    let at = |e: &[T; 2]| {
         let alpha = e[1].atan2(e[0]);
         let part = |first: T, second: T, rest: T| -(first * e[0] + second * e[1] + rest);
         let f = [part(first[0], second[0], rest[0]), part(first[1], second[1], rest[1])];
         let beta = f[1].atan2(f[0]);
-        let mut x = unknowns.map(|[p, q]| T::constant(p) * alpha + T::constant(q) * beta);
+        let mut x = both(unknowns, |[p, q]| T::constant(*p) * alpha + T::constant(*q) * beta);
         x.iter_mut().zip(near).for_each(|(angle, near)| *angle = same_turn(*angle, *near));
         x
     };
-    Roots { x: found.map(at), real }
+    Roots { x: both(&found, at), real }
 }
 
 /// |a⁻¹(b s + c)| = 1 is a quadratic equation in s.
@@ -152,7 +158,7 @@ fn slide<T: Scalar>(
         let e = [-(slope[0] * s + rest[0]), -(slope[1] * s + rest[1])];
         placed(e[1].atan2(e[0]), s, angle_first, near)
     };
-    Roots { x: lengths.map(at), real }
+    Roots { x: both(&lengths, |s| at(*s)), real }
 }
 
 /// |(a + s b) e| = |c| is a quadratic equation in s, and e stands along −(a + s b)ᵀ c.
@@ -172,13 +178,13 @@ fn telescope<T: Scalar>(
         let e = [-dot(&first, c), -dot(&second, c)];
         placed(e[1].atan2(e[0]), s, angle_first, near)
     };
-    Roots { x: lengths.map(at), real }
+    Roots { x: both(&lengths, |s| at(*s)), real }
 }
 
 /// The chord that two circles share, or that a circle cuts off a line.
 fn circles<T: Scalar>(rows: &[[T; 4]; 2]) -> Roots<T, 2> {
     let [[w, u, v, c], other] = *rows;
-    let centre = [u, v].map(|part| -part / (w + w));
+    let centre = [-u / (w + w), -v / (w + w)];
     let radius = dot(&centre, &centre) - c / w;
     // The other row without its squares: the line of the chord.
     let part = other[0] / w;
@@ -189,7 +195,8 @@ fn circles<T: Scalar>(rows: &[[T; 4]; 2]) -> Roots<T, 2> {
     let apart = off * off * length;
     let (half, real) =
         root((radius - apart) / length, (dot(&centre, &centre) + (c / w).abs() + apart) / length);
-    Roots { x: [half, -half].map(|half| [foot[0] - half * normal[1], foot[1] + half * normal[0]]), real }
+    let at = |half: T| [foot[0] - half * normal[1], foot[1] + half * normal[0]];
+    Roots { x: [at(half), at(-half)], real }
 }
 
 /// Roots of `square x² + 2 half x + level = 0`; `size`: of the terms that `level` is the difference of.

@@ -7,7 +7,7 @@ use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::is_regular;
 use crate::linear_algebra::orthogonal::minimum_norm;
 use crate::linear_algebra::redundant_widths::Widths;
-use crate::linear_algebra::vectors::select;
+use crate::linear_algebra::vectors::{Each, of_each, select};
 use crate::mechanism::block::{Block, BlockSolver};
 use crate::mechanism::outcome::Outcome;
 use crate::scalar::number::Scalar;
@@ -123,7 +123,7 @@ fn plainly<T: Scalar, const K: usize, F: Factorization<T, K>>(
         if T::all(closes) {
             return Ok(Closed { x, residuals, tolerances, evaluations });
         }
-        let toward = residuals.map(|r| -r);
+        let toward = residuals.each(|r| -r);
         let (step, regular) = F::solve_once(&jacobian, &toward, &block.row_scales, &block.coordinate_scales);
         let mut plain = regular & !beyond(block, &step);
         if evaluations > 1 {
@@ -329,7 +329,7 @@ impl<T: Scalar, const K: usize> Descent<T, K> {
     #[inline(always)]
     fn step<F: Factorization<T, K>>(&self, block: &Block<T, K>) -> [T; K] {
         let (factors, margin) = F::factorize(&self.jacobian, &block.row_scales, &block.coordinate_scales);
-        let mut step = factors.solve(&self.residuals.map(|r| -r));
+        let mut step = factors.solve(&self.residuals.each(|r| -r));
         let singular = self.open & !is_regular(margin);
         if !T::all(!singular) {
             step = shortest_steps(singular, step, &self.residuals, &self.jacobian, block);
@@ -350,12 +350,15 @@ fn shortest_steps<T: Scalar, const K: usize>(
 ) -> [T; K] {
     let shortest: T::Lanes<[T::Real; K]> = T::per_lane(|lane| {
         if !T::test(singular, lane) {
-            return steps.map(|step| step.lane(lane));
+            return of_each(&steps, |step| step.lane(lane));
         }
-        let a = jacobian.map(|row| row.map(|entry| entry.lane(lane)));
-        let b = residuals.map(|r| -r.lane(lane));
-        let row_scales = block.row_scales.map(|scale| scale.lane(lane));
-        let coordinate_scales = block.coordinate_scales.map(|scale| scale.lane(lane));
+        let mut a = [[T::Real::constant(0.0); K]; K];
+        for (row, of_lanes) in a.iter_mut().zip(jacobian) {
+            *row = of_each(of_lanes, |entry| entry.lane(lane));
+        }
+        let b = of_each(residuals, |r| -r.lane(lane));
+        let row_scales = of_each(&block.row_scales, |scale| scale.lane(lane));
+        let coordinate_scales = of_each(&block.coordinate_scales, |scale| scale.lane(lane));
         minimum_norm(&a, &b, &row_scales, &coordinate_scales, singular::HALF_THE_DIGITS.of()).0
     });
     let component = |lane: usize, k: usize| shortest.as_ref().get(lane).and_then(|x| x.get(k)).copied();
@@ -374,7 +377,7 @@ pub(crate) fn capped<T: Scalar, const K: usize, const M: usize>(
         return step;
     }
     let factor = limit / T::select(beyond, largest, limit);
-    step.map(|change| change * factor)
+    step.each(|change| change * factor)
 }
 
 /// `true` if an angle changes by more than [`LARGEST_ANGLE_STEP`].

@@ -30,6 +30,19 @@ impl<T: Scalar, const K: usize> Each<T> for [T; K] {
     }
 }
 
+/// The number of each item, in their order. A loop, as [`Each::each`].
+#[inline(always)]
+pub(crate) fn of_each<X, T: Scalar, const K: usize>(
+    items: &[X; K],
+    mut number: impl FnMut(&X) -> T,
+) -> [T; K] {
+    let mut numbers = [T::constant(0.0); K];
+    for (place, item) in numbers.iter_mut().zip(items) {
+        *place = number(item);
+    }
+    numbers
+}
+
 /// Component by component `yes` where the mask is true, `no` elsewhere.
 #[inline(always)]
 pub(crate) fn select<T: Scalar, const K: usize>(mask: T::Mask, yes: &[T; K], no: &[T; K]) -> [T; K] {
@@ -81,5 +94,5 @@ pub(crate) fn dot<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
 
 /// `matrix` (M rows of N) times `x`: M, each component a [`dot`].
 pub(crate) fn times<T: Scalar, const N: usize, const M: usize>(matrix: &[[T; N]; M], x: &[T; N]) -> [T; M] {
-    matrix.map(|row| dot(&row, x))
+    of_each(matrix, |row| dot(row, x))
 }

@@ -31,6 +31,21 @@ pub(super) struct AlongMotion<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, 
     pub preferred: &'a [u16],
 }
 
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> AlongMotion<'_, S, R, N, M> {
+    /// Those of the constraints alone.
+    pub(super) fn free_motions(&self) -> FreeMotions<R, N> {
+        let (zero, independent) = (R::constant(0.0), self.variation.independent);
+        let rest = FreeMotion { place: [zero; N], rate: [zero; N], acceleration: [zero; N] };
+        let mut motions = [rest; N];
+        for (index, motion) in
+            motions.iter_mut().enumerate().filter(|(index, _)| marked(&independent, *index))
+        {
+            *motion = self.variation.motion(index);
+        }
+        (motions, independent)
+    }
+}
+
 impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for AlongMotion<'_, S, R, N, M>
 where
     S: Dynamic<R, N, M>,
@@ -43,12 +58,7 @@ where
     fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let (zero, modes) = (R::constant(0.0), S::set_valued_modes(self.model.parameters));
         let rest = FreeMotion { place: [zero; N], rate: [zero; N], acceleration: [zero; N] };
-        let (mut motions, mut independent) = ([rest; N], self.variation.independent);
-        for (index, motion) in
-            motions.iter_mut().enumerate().filter(|(index, _)| marked(&independent, *index))
-        {
-            *motion = self.variation.motion(index);
-        }
+        let (motions, mut independent) = self.free_motions();
         let mut held = [false; K];
         for (index, ((held, row), mode)) in held.iter_mut().zip(rows).zip(modes).enumerate() {
             *held = sticks(mode);

@@ -173,7 +173,9 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
     };
     let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
-    if let Some(rates) = judged.filter(|_| !S::SET_VALUED.is_empty()) {
+    if const { !S::SET_VALUED.is_empty() }
+        && let Some(rates) = judged
+    {
         let free = FreeOfHeld { model, t, y, rates, basis: (basis, freedom) };
         (basis, freedom) =
             mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, free)?;
@@ -182,7 +184,11 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
     if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(model, t, y, (&position, qdd), lambda)?) {
         let variation = &Variation::of(model, (t, y, qdd), &position, independent)?;
         let along = AlongMotion { model, t, y, qdd, lambda, variation, preferred: independent };
-        let motions = mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, along)?;
+        let motions = if const { S::SET_VALUED.is_empty() } {
+            along.free_motions()
+        } else {
+            mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, along)?
+        };
         let (linear, rates) = moving(&tangent, &motions);
         return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &rates))));
     }

@@ -6,7 +6,7 @@ use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
 use crate::linear_algebra::orthogonal::minimum_norm;
-use crate::linear_algebra::vectors::{dot, times};
+use crate::linear_algebra::vectors::{dot, of_each, times};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, singular};
@@ -83,7 +83,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
         let closing = self.factors.solve(&[zero; N], phi).0;
         let open = imbalance.plus(-one, &[1.0], [&times(&self.stiffness, &closing)]);
-        let wanted = self.motions.map(|motion| dot(&motion, &open));
+        let wanted = of_each(&self.motions, |motion| dot(motion, &open));
         let found = self.shortest(&self.reduced, &wanted);
         let left = wanted.plus(-one, &[1.0], [&times(&self.reduced, &found)]);
         let step = closing.plus(one, &[1.0], [&self.moved(&found)]);
@@ -133,7 +133,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         let one = R::constant(1.0);
         let mut scaled = *motion;
         scaled.iter_mut().zip(scales).for_each(|(part, scale)| *part = *part / (*scale * *scale));
-        let shares = self.motions.map(|free| dot(&free, &scaled));
+        let shares = of_each(&self.motions, |free| dot(free, &scaled));
         let answered = self.shortest(&self.reduced, &times(&self.reduced, &shares));
         self.moved(&shares.plus(-one, &[1.0], [&answered]))
     }
@@ -161,7 +161,11 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
 /// Zᵀ K Z of `motions` Z (N of N) and `stiffness` K (N rows of N).
 #[inline(never)]
 fn projected<R: Real, const N: usize>(motions: &[[R; N]; N], stiffness: &[[R; N]; N]) -> [[R; N]; N] {
-    motions.map(|left| motions.map(|right| dot(&left, &times(stiffness, &right))))
+    let mut projected = [[R::constant(0.0); N]; N];
+    for (row, left) in projected.iter_mut().zip(motions) {
+        *row = of_each(motions, |right| dot(left, &times(stiffness, right)));
+    }
+    projected
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {

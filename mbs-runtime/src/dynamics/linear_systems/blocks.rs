@@ -68,13 +68,15 @@ impl<R: Real, const N: usize, const M: usize> Blocks<R, N, M> {
     /// Factorises with `mass` above left, `phi_q` below left and its transpose above right.
     pub(crate) fn factorize(mass: &[[R; N]; N], phi_q: &[[R; N]; M]) -> (Self, Health<R>) {
         let zero = R::constant(0.0);
-        let mut upper = mass.map(|left| BlockRow { left, right: [zero; M] });
-        for (j, row) in upper.iter_mut().enumerate() {
+        let none = BlockRow { left: [zero; N], right: [zero; M] };
+        let (mut upper, mut lower) = ([none; N], [none; M]);
+        lower.iter_mut().zip(phi_q).for_each(|(row, left)| row.left = *left);
+        for (j, (row, left)) in upper.iter_mut().zip(mass).enumerate() {
+            row.left = *left;
             for (entry, constraint) in row.right.iter_mut().zip(phi_q) {
                 *entry = constraint.get(j).copied().unwrap_or(zero);
             }
         }
-        let lower = phi_q.map(|left| BlockRow { left, right: [zero; M] });
         let mut blocks = Blocks { upper, lower, upper_pivots: [0; N], lower_pivots: [0; M] };
         let health = blocks.eliminate();
         (blocks, health)

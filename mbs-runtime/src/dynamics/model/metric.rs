@@ -1,7 +1,7 @@
 //! Reference metric of a mechanism's coordinates and rows, and kinds of coordinates.
 
 use crate::failure::{Failure, FailureKind};
-use crate::linear_algebra::vectors::Each;
+use crate::linear_algebra::vectors::{Each, of_each};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::{Real, Scalar};
 use crate::tolerances::{motion, positions};
@@ -162,8 +162,8 @@ impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
         errors: [&[R; N]; K],
     ) -> [R; K] {
         let allowed = self.allowed(tolerance, before, after);
-        errors.map(|error| {
-            let mut ratios = *error;
+        of_each(&errors, |error| {
+            let mut ratios = **error;
             ratios.iter_mut().zip(&allowed).for_each(|(error, allowed)| *error = error.abs() / *allowed);
             ratios.iter().fold(R::constant(0.0), |largest, ratio| worse(largest, *ratio))
         })

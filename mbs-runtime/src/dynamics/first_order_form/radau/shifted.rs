@@ -4,7 +4,7 @@ use crate::dynamics::first_order_form::equations::Moving;
 use crate::dynamics::first_order_form::radau::slopes::Slopes;
 use crate::dynamics::first_order_form::radau::split::{Number, Numbers, SplitLu, entry, product, reciprocal};
 use crate::dynamics::integrators::vector::Vector;
-use crate::linear_algebra::vectors::Each;
+use crate::linear_algebra::vectors::{Each, of_each};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
 
@@ -39,8 +39,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize, const PARTS: 
         s: Number<R, PARTS>,
     ) -> Option<Self> {
         let states = match &slopes.states {
-            Some(states) => Some(eliminated(states, s)?),
-            None => None,
+            Some(states) if const { !S::STATES.is_empty() } => Some(eliminated(states, s)?),
+            _ => None,
         };
         let square = product(s, s);
         let mut rows = [[[R::constant(0.0); N]; PARTS]; N];
@@ -82,7 +82,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize, const PARTS: 
         // Work and phases; the other parts are written below.
         let mut found = times(inverse, right);
         let (q, qd) = (right.map(|right| right.y.q), right.map(|right| right.y.qd));
-        let states = self.states.as_ref().map(|states| followed(slopes, states, right));
+        let states = match &self.states {
+            Some(states) if const { !S::STATES.is_empty() } => Some(followed(slopes, states, right)),
+            _ => None,
+        };
         let mut open = [[zero; N]; PARTS];
         for (part, (open, (q, qd))) in open.iter_mut().zip(q.iter().zip(&qd)).enumerate() {
             *open = *qd;
@@ -106,7 +109,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize, const PARTS: 
         let mut speed = q.map(|q| q.each(|q| -q));
         add_times(&mut speed, self.s, &place);
         let states = match (&self.states, states) {
-            (Some(rows), Some(states)) => Some(carried(rows, states, &place)),
+            (Some(rows), Some(states)) if const { !S::STATES.is_empty() } => {
+                Some(carried(rows, states, &place))
+            }
             _ => None,
         };
         for (index, (found, (place, speed))) in found.iter_mut().zip(place.iter().zip(&speed)).enumerate() {
@@ -166,7 +171,7 @@ fn followed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize, const 
     for index in 0..count(&open) {
         let mut sum = [R::constant(0.0); PARTS];
         for column in 0..count(&open) {
-            let factor = rows.each_ref().map(|rows| at(rows, index, column));
+            let factor = of_each(rows, |rows| at(rows, index, column));
             let change = product(factor, value(&open, column));
             sum.iter_mut().zip(change).for_each(|(sum, change)| *sum = *sum + change);
         }
@@ -188,7 +193,7 @@ where
     for index in 0..count(&states) {
         let mut sum = value(&states, index);
         for column in 0..N {
-            let factor = rows.each_ref().map(|rows| {
+            let factor = of_each(rows, |rows| {
                 let row = rows.as_ref().get(index).and_then(|row| row.q.get(column));
                 row.copied().unwrap_or(R::constant(0.0))
             });
@@ -230,13 +235,13 @@ where
     for column in 0..states {
         let mut best = (column, -one);
         for index in column..states {
-            let size = matrix.each_ref().map(|rows| at(rows, index, column));
+            let size = of_each(&matrix, |rows| at(rows, index, column));
             let size = size.iter().fold(zero, |size, part| size + part.abs());
             if best.1 < size {
                 best = (index, size);
             }
         }
-        let pivot = reciprocal(matrix.each_ref().map(|rows| at(rows, best.0, column)));
+        let pivot = reciprocal(of_each(&matrix, |rows| at(rows, best.0, column)));
         if !pivot.iter().all(|part| part.is_finite()) {
             return None;
         }
@@ -245,7 +250,7 @@ where
             scale(rows, column, pivot);
         }
         for index in (0..states).filter(|index| *index != column) {
-            let factor = matrix.each_ref().map(|rows| at(rows, index, column));
+            let factor = of_each(&matrix, |rows| at(rows, index, column));
             for rows in [&mut matrix, &mut result] {
                 subtract(rows, index, factor, column);
             }
@@ -268,7 +273,7 @@ where
 }
 
 fn value<R: Real, Z: AsRef<[R]>, const PARTS: usize>(states: &[Z; PARTS], index: usize) -> Number<R, PARTS> {
-    states.each_ref().map(|states| states.as_ref().get(index).copied().unwrap_or(R::constant(0.0)))
+    of_each(states, |states| states.as_ref().get(index).copied().unwrap_or(R::constant(0.0)))
 }
 
 fn write<R: Real, Z: AsMut<[R]>, const PARTS: usize>(
@@ -324,8 +329,10 @@ fn subtract<R: Real, Z, P, const N: usize, const PARTS: usize>(
     Z: Copy + AsRef<[R]> + AsMut<[R]>,
     P: Copy + AsRef<[StateSlope<R, N, Z>]> + AsMut<[StateSlope<R, N, Z>]>,
 {
-    let read = rows.each_ref().map(|rows| rows.as_ref().get(other).copied());
-    let mut taken = rows.each_ref().map(|rows| rows.as_ref().get(index).copied());
+    let (mut read, mut taken) = ([None; PARTS], [None; PARTS]);
+    for ((read, taken), rows) in read.iter_mut().zip(&mut taken).zip(rows.iter()) {
+        (*read, *taken) = (rows.as_ref().get(other).copied(), rows.as_ref().get(index).copied());
+    }
     match (taken.as_mut_slice(), read.as_slice(), factor.as_slice()) {
         ([Some(row)], [Some(other)], [factor]) => row.subtract(*factor, other),
         ([Some(re), Some(im)], [Some(other_re), Some(other_im)], [a, b]) => {

@@ -2,6 +2,7 @@
 //!
 //! A row holds its parts one after the other, so that a multiple of one is taken off another by loops over plain arrays.
 
+use crate::linear_algebra::vectors::of_each;
 use crate::scalar::number::Real;
 
 /// A number by its parts.
@@ -85,7 +86,7 @@ pub(super) fn entry<R: Real, const L: usize, const PARTS: usize>(
     row: &Numbers<R, L, PARTS>,
     k: usize,
 ) -> Number<R, PARTS> {
-    row.map(|part| part.get(k).copied().unwrap_or(R::constant(0.0)))
+    of_each(row, |part| part.get(k).copied().unwrap_or(R::constant(0.0)))
 }
 
 #[inline(always)]
