@@ -98,8 +98,14 @@ impl Declarations<'_> {
         });
         let of_angle = callable.unit == Dimension::METRE && callable.argument == Dimension::NUMBER;
         if !closes || !of_angle {
-            let law = if is_polar { "closed after a turn" } else { "with the period TAU" };
-            let message = format!("`{function}` is no {what}: a length over an angle, {law}");
+            let message = match is_polar {
+                true => {
+                    format!("`{function}` is no polar radius: a length over an angle, closed after a turn")
+                }
+                false => format!(
+                    "`{function}` is no component of a closed curve: a length over an angle, with the period TAU"
+                ),
+            };
             let name = declared.map_or(function.as_str(), |declared| &declared.name.text);
             let unit = match declared.and_then(|declared| declared.array) {
                 Some(array) => format!("[m; {}]", array.length),

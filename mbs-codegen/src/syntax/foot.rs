@@ -103,34 +103,24 @@ fn foot(parser: &mut Parser<'_>) -> Read<Foot> {
 
 /// What stands behind `of`, and the form of the whole statement.
 fn follower(parser: &mut Parser<'_>) -> Read<(Follower, &'static str)> {
-    const FORMS: [&str; 2] = ["circle", "flat"];
     if let (TokenKind::Identifier(form), TokenKind::Open('(')) = (parser.peek(), parser.peek_at(1)) {
-        let help = if form == "flat" { FLAT } else { CIRCLE };
-        if FORMS.contains(&form.as_str()) {
-            parser.skip(2);
-            let first = part(parser)?;
-            parser.expect(',', help)?;
+        if parser.at_word("circle") {
+            let [centre, radius] = two(parser, CIRCLE)?;
+            let turned = parser.take_word("turned").then(|| part(parser)).transpose()?.unwrap_or_default();
+            return Ok((Follower::Circle([centre, radius, turned]), CIRCLE));
+        }
+        if parser.at_word("flat") {
             let span = parser.span();
-            let second = part(parser)?;
-            if let (true, Some(TokenKind::Open('['))) =
-                (help == FLAT, second.first().map(|token| &token.kind))
-            {
+            let [point, normal] = two(parser, FLAT)?;
+            if normal.first().is_some_and(|token| token.kind == TokenKind::Open('[')) {
                 let message = "the normal of a flat face is given by its direction, an angle";
-                parser.diagnostics.report(
-                    span,
-                    message,
-                    "write `flat(P, 90deg)`, or `flat(P, psi + 90deg)` on a body",
-                );
+                let help = "write `flat(P, 90deg)`, or `flat(P, psi + 90deg)` on a body";
+                parser.diagnostics.report(normal.first().map_or(span, |token| token.span), message, help);
                 return Err(GivenUp);
             }
-            parser.expect(')', help)?;
-            if help == FLAT {
-                return Ok((Follower::Flat([first, second]), help));
-            }
-            let turned = parser.take_word("turned").then(|| part(parser)).transpose()?.unwrap_or_default();
-            return Ok((Follower::Circle([first, second, turned]), help));
+            return Ok((Follower::Flat([point, normal]), FLAT));
         }
-        if let Some(meant) = nearest(form, FORMS).filter(|_| !parser.declares(form)) {
+        if let Some(meant) = nearest(form, ["circle", "flat"]).filter(|_| !parser.declares(form)) {
             let (span, message) = (parser.span(), format!("`{form}` is nothing that has a foot"));
             parser.diagnostics.report(span, message, format!("did you mean `{meant}`?"));
             return Err(GivenUp);
@@ -142,6 +132,16 @@ fn follower(parser: &mut Parser<'_>) -> Read<(Follower, &'static str)> {
         return Ok((Follower::Curve(value, place), PAIR));
     }
     Ok((Follower::Point(value), FOOT))
+}
+
+/// Two values in parentheses behind a word.
+fn two(parser: &mut Parser<'_>, help: &str) -> Read<[Vec<Token>; 2]> {
+    parser.skip(2);
+    let first = part(parser)?;
+    parser.expect(',', help)?;
+    let second = part(parser)?;
+    parser.expect(')', help)?;
+    Ok([first, second])
 }
 
 fn word(parser: &mut Parser<'_>, word: &str, help: &str) -> Read<()> {
