@@ -110,12 +110,11 @@ fn follower(parser: &mut Parser<'_>) -> Read<(Follower, &'static str)> {
             return Ok((Follower::Circle([centre, radius, turned]), CIRCLE));
         }
         if parser.at_word("flat") {
-            let span = parser.span();
             let [point, normal] = two(parser, FLAT)?;
-            if normal.first().is_some_and(|token| token.kind == TokenKind::Open('[')) {
+            if let Some(vector) = normal.first().filter(|token| token.kind == TokenKind::Open('[')) {
                 let message = "the normal of a flat face is given by its direction, an angle";
                 let help = "write `flat(P, 90deg)`, or `flat(P, psi + 90deg)` on a body";
-                parser.diagnostics.report(normal.first().map_or(span, |token| token.span), message, help);
+                parser.diagnostics.report(vector.span, message, help);
                 return Err(GivenUp);
             }
             return Ok((Follower::Flat([point, normal]), FLAT));
@@ -190,28 +189,24 @@ fn written(name: &Name, foot: &Foot, slides: bool, diagnostics: &mut Diagnostics
     let none: &[Token] = &[];
     let (forms, slip, [follower, second, turned], other): ([&str; 3], &str, [&[Token]; 3], Option<&Name>) =
         match &foot.follower {
-            Follower::Point(point) => {
-                ([POINT, NEAREST, BY_NORMAL], "der($follower)", [point, none, none], None)
-            }
+            Follower::Point(point) => ([POINT, NEAREST, BY_NORMAL], "", [point, none, none], None),
             Follower::Circle([centre, radius, turned]) => {
                 // The contact lies a radius against the normal from the centre, so the turn moves it against the tangent.
                 let slip = match turned.is_empty() {
-                    true => "der($follower)",
-                    false => "der($follower) - $second*der($turned)*w_tangent",
+                    true => "",
+                    false => "- $second*der($turned)*w_tangent",
                 };
                 ([CIRCLE, NEAREST, BY_NORMAL], slip, [centre, radius, turned], None)
             }
-            Follower::Flat([point, normal]) => {
-                ([FLAT, "", ""], "der($follower)", [point, normal, none], None)
-            }
+            Follower::Flat([point, normal]) => ([FLAT, "", ""], "", [point, normal, none], None),
             Follower::Curve(curve, place) => {
-                ([PAIR, BY_NORMAL, ""], "der(v_place) - der(v)*v_along", [curve, none, none], Some(place))
+                ([PAIR, BY_NORMAL, ""], "- der(v)*v_along", [curve, none, none], Some(place))
             }
         };
     let first = "coord w: rad = $near; let w_place = place(w, $cam); let w_along = d(w_place, w);";
     let mut text = format!("{first} {}", forms.join(" "));
     if slides {
-        text.push_str(&format!("let w_slip = dot({slip} - der(w_place) + der(w)*w_along, w_tangent);"));
+        text.push_str(&format!("let w_slip = dot(der(w_from) + der(w)*w_along {slip}, w_tangent);"));
     }
     let cam =
         [Token { kind: TokenKind::Identifier(foot.curve.text.clone()), span: foot.curve.span, raw: false }];

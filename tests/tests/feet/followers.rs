@@ -322,7 +322,7 @@ fn no_other_pair_of_places_is_nearer_within_the_reach_of_a_pair() {
     // The hollow has the radius 18²/30 mm, the pad's flattest place 6²/4 mm.
     assert!(far > 0.0017 && far < 0.0018 && far < deep, "{deep} {far}");
     let over = OverHollow { bound: far, ..OverHollow::new(crate::WAIST, x, y) };
-    let mut stepper = Stepper::assemble(over.clone(), [FRAC_PI_2, 1.1], 0.0).expect("a pair of feet");
+    let mut stepper = Stepper::assemble(over, [FRAC_PI_2, 1.1], 0.0).expect("a pair of feet");
     let angles = || (0..SAMPLES).map(|k| TAU * f64::from(k) / f64::from(SAMPLES));
     let places: Vec<[f64; 2]> =
         angles().map(|w| [crate::WAIST.radius(w) * w.cos(), crate::WAIST.radius(w) * w.sin()]).collect();
