@@ -235,7 +235,7 @@ fn written(name: &Name, foot: &Foot, slides: bool, diagnostics: &mut Diagnostics
                 tokens.extend_from_slice(inner);
                 tokens.extend(in_brackets.then(|| bracket(TokenKind::Close(')'))));
             }
-            TokenKind::Identifier(word) => tokens.push(Token { kind: renamed(word, name, other), ..token }),
+            TokenKind::Identifier(word) => tokens.push(renamed(word, name, other)),
             _ => tokens.push(token),
         }
     }
@@ -244,12 +244,12 @@ fn written(name: &Name, foot: &Foot, slides: bool, diagnostics: &mut Diagnostics
 }
 
 /// A word of a form with the names of the places in it.
-fn renamed(word: &str, w: &Name, v: Option<&Name>) -> TokenKind {
+fn renamed(word: &str, w: &Name, v: Option<&Name>) -> Token {
     let (place, value) = word.split_at(word.find('_').unwrap_or(word.len()));
-    let place = match (place, v) {
-        ("w", _) => &w.text,
-        ("v", Some(v)) => &v.text,
-        _ => place,
+    let (place, span) = match (place, v) {
+        ("w", _) => (w.text.as_str(), w.span),
+        ("v", Some(v)) => (v.text.as_str(), if value.is_empty() { v.span } else { w.span }),
+        _ => (place, w.span),
     };
-    TokenKind::Identifier(format!("{place}{value}"))
+    Token { kind: TokenKind::Identifier(format!("{place}{value}")), span, raw: false }
 }
