@@ -73,3 +73,36 @@ fn casadi_and_50_digits_confirm_arrays_of_functions() {
     let swapped = check(Arrays::new(StandIn::<0>, [second, first, third], StandIn::<4>));
     assert!(matches!(swapped, Err(CheckError::Differs(_))), "{swapped:?}");
 }
+
+mechanism! {
+    /// Feet of a point, a circle, a flat face and a curve, on polar and on parametric curves.
+    pub mechanism Feet;
+    param bound: m = 1m;
+    param rho: m = 0.2m;
+    function r: [m; 2](rad), C6, periodic TAU;
+    function x: m(rad), C6, periodic TAU;
+    function y: m(rad), C6, periodic TAU;
+    coord theta: rad = 0.2;
+    coord psi: rad = 0.4;
+    coord p: [m; 2] = [1m, 0.5m];
+    drive shaft: theta == 0.3 [rad/s]*t;
+    drive other: psi == 0.4 + 0.2 [rad/s]*t;
+    curve cam = polar r[0] about [0.1m, 0.2m] turned theta;
+    curve rim = parametric x, y about p turned psi;
+    curve still = polar r[1] about [2m, 0m];
+    foot a of [1m + 0.1m*sin(t/1s), 0.7m] on rim within bound near 0.1;
+    foot b of circle([0.3m, 1m], rho) turned psi on cam within bound near 0.2;
+    foot c of flat(p, psi + 90deg) on cam within bound near 0.3;
+    foot e of rim at f on still within bound near 0.4, 0.5;
+    constraint rides { b_gap == p.0*0.1; c_gap + e_gap == 0m; }
+    out gaps: [m; 4] = [a_gap, b_gap, c_gap, e_gap];
+    out slips: [m/s; 4] = [a_slip, b_slip, c_slip, e_slip];
+    out normals: [1; 2] = a_normal + c_normal;
+}
+
+#[test]
+fn casadi_and_50_digits_confirm_feet() {
+    let confirmed = check(Feet::new(NumberedStandIn::array(0), StandIn::<2>, StandIn::<3>)).unwrap();
+    println!("{confirmed}");
+    assert!(confirmed.casadi.functions.iter().all(|function| function.scale > 0.0), "{confirmed}");
+}

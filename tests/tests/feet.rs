@@ -1,6 +1,9 @@
 //! Feet of perpendiculars on curves, against a bracketed minimization of the distance.
 #![forbid(unsafe_code)]
 
+#[path = "feet/followers.rs"]
+mod followers;
+
 use core::f64::consts::{PI, TAU};
 
 use mbs_runtime::driver::{Bounded, nearest_foot, reach};

@@ -3,6 +3,8 @@
 //! A polar curve is star-shaped: r = R(w − θ) about its centre C, w the angle of a point A seen from C. It has one row, r − R, and no
 //! coordinate of its own. A circle that rolls on a contour is a point, its centre, on the pitch curve, which lies the circle's radius
 //! outside. So every curve here is one of points.
+//!
+//! A parametric curve has two components over a parameter. It has places alone; points beside it have feet.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +12,7 @@ use proc_macro2::Span;
 
 use super::declarations::Declarations;
 use super::elaborator::Elaborator;
-use super::names::{Callable, Curve, Symbol};
+use super::names::{Callable, Curve, CurveForm, Symbol};
 use super::resolver::Resolver;
 use super::unit_inference::Bare;
 use super::units::Dimension;
@@ -33,6 +35,8 @@ struct Seen {
     radius: Scalar,
     /// Polar angle in the axes of the curve.
     angle: Scalar,
+    /// The polar radius as a function.
+    of: (Callable, String),
 }
 
 impl Declarations<'_> {
@@ -40,35 +44,68 @@ impl Declarations<'_> {
     pub(super) fn curve(
         &mut self,
         centre: &Expression,
-        radius: &Expression,
-        number: Option<&Expression>,
+        turned: &Expression,
+        functions: &[(Expression, Option<Expression>)],
     ) -> Result<(Curve, Reach), Fault> {
-        let Some((Instruction { operation: Operation::Call { function, .. }, span }, turned)) =
-            radius.code.split_last()
-        else {
+        let is_polar = functions.len() == 1;
+        let read: Vec<_> = functions
+            .iter()
+            .map(|(call, number)| self.curve_function(call, number.as_ref(), is_polar))
+            .collect();
+        let form = match read.into_iter().collect::<Result<Vec<_>, Fault>>()?.as_slice() {
+            [radius] => CurveForm::Polar(radius.clone()),
+            [x, y] => CurveForm::Parametric([x.clone(), y.clone()]),
+            _ => return Err(Fault),
+        };
+        self.elaborate(|work| {
+            work.reach = Reach::Let;
+            let (centre, turned) = (work.value(centre), work.value(turned));
+            let (centre, turned) = (centre?, turned?);
+            is_point(work, &centre, "the centre of a curve")?;
+            let angle = work.scalar(&turned, "`turned`", turned.span)?;
+            work.number(angle, "the angle of a curve", turned.span)?;
+            Ok((Curve { form: form.clone(), centre, turned }, work.needs))
+        })
+    }
+
+    /// A polar radius, or a component of a parametric curve: a length over an angle that closes after a turn.
+    fn curve_function(
+        &mut self,
+        call: &Expression,
+        number: Option<&Expression>,
+        is_polar: bool,
+    ) -> Result<(Callable, String), Fault> {
+        let Some(Instruction { operation: Operation::Call { function, .. }, span }) = call.code.last() else {
             return Err(Fault);
         };
-        let (callable, function) = &match self.names.get(function) {
-            Some(Symbol::Function(callable)) => self.radius_of((*callable, function), number, *span)?,
+        let what = if is_polar { "polar radius" } else { "component of a closed curve" };
+        let (callable, function) = match self.names.get(function) {
+            Some(Symbol::Function(callable)) => self.one_of((*callable, function), number, *span)?,
             Some(Symbol::Faulty) => return Err(Fault),
             _ => {
                 let message = format!("`{function}` is no declared function");
-                let help =
-                    format!("declare the polar radius: `function {function}: m(rad), C3, periodic TAU;`");
+                let help = format!("declare the {what}: `function {function}: m(rad), C3, periodic TAU;`");
                 self.diagnostics.report(*span, message, help);
                 return Err(Fault);
             }
         };
-        let period = self.model.functions.get(callable.index).and_then(|function| function.period);
-        let closes = period.is_some_and(|period| {
-            let turns = TAU / period;
-            (turns - turns.round()).abs() <= OF_PERIOD * turns
+        let declared = self.model.functions.get(callable.index);
+        let turns = declared.and_then(|function| function.period).map(|period| TAU / period);
+        // A curve that closes in a part of a turn would be gone through twice, so each of its places would have two parameters.
+        let closes = turns.is_some_and(|turns| {
+            let whole = if is_polar { turns.round() } else { 1.0 };
+            (turns - whole).abs() <= OF_PERIOD * turns
         });
         let of_angle = callable.unit == Dimension::METRE && callable.argument == Dimension::NUMBER;
         if !closes || !of_angle {
-            let message =
-                format!("`{function}` is no polar radius: a length over an angle, closed after a turn");
-            let declared = self.model.functions.get(callable.index);
+            let message = match is_polar {
+                true => {
+                    format!("`{function}` is no polar radius: a length over an angle, closed after a turn")
+                }
+                false => format!(
+                    "`{function}` is no component of a closed curve: a length over an angle, with the period TAU"
+                ),
+            };
             let name = declared.map_or(function.as_str(), |declared| &declared.name.text);
             let unit = match declared.and_then(|declared| declared.array) {
                 Some(array) => format!("[m; {}]", array.length),
@@ -78,21 +115,11 @@ impl Declarations<'_> {
             self.diagnostics.report(*span, message, help);
             return Err(Fault);
         }
-        let turned = Expression { code: turned.to_vec() };
-        self.elaborate(|work| {
-            work.reach = Reach::Let;
-            let (centre, turned) = (work.value(centre), work.value(&turned));
-            let (centre, turned) = (centre?, turned?);
-            is_point(work, &centre, "the centre of a curve")?;
-            let angle = work.scalar(&turned, "`turned`", turned.span)?;
-            work.number(angle, "the angle of a curve", turned.span)?;
-            let function = function.clone();
-            Ok((Curve { radius: *callable, function, centre, turned }, work.needs))
-        })
+        Ok((callable, function))
     }
 
     /// The function of a curve, and its name; one of an array by its number.
-    fn radius_of(
+    fn one_of(
         &mut self,
         (function, name): (Callable, &str),
         number: Option<&Expression>,
@@ -148,8 +175,8 @@ impl Elaborator<'_> {
         if function == "place" {
             return self.place(&curve, &point, span);
         }
-        let seen = self.seen(&curve, &point, span)?;
-        let slope = self.radius(&curve, 1, seen.angle, span)?;
+        let seen = self.seen(&curve, function, &point, span)?;
+        let slope = self.of_angle(&seen.of, 1, seen.angle, span)?;
         // 1/√(1 + (R′/r)²) = r/√(r² + R′²), with no quotient that another one waits for.
         let length = self.binary_scalar(Binary::Hypot, seen.r, slope, seen.r.quantity, span)?;
         match function {
@@ -171,11 +198,20 @@ impl Elaborator<'_> {
         }
     }
 
-    /// The point of the curve at the polar angle `angle` in its own axes: C + R(w) e(w + θ).
+    /// The point of the curve at the polar angle or parameter `angle` in its own axes: C + R(w) e(w + θ), or C + rot(θ) [x(w), y(w)].
     fn place(&mut self, curve: &Curve, angle: &Value, span: Span) -> Result<Value, Fault> {
         let angle = self.scalar(angle, "`place`", angle.span)?;
         self.number(angle, "the place on a curve", angle.span)?;
-        let radius = self.radius(curve, 0, angle, span)?;
+        let radius = match &curve.form {
+            CurveForm::Polar(radius) => self.of_angle(radius, 0, angle, span)?,
+            CurveForm::Parametric([x, y]) => {
+                let items = vec![self.of_angle(x, 0, angle, span)?, self.of_angle(y, 0, angle, span)?];
+                let turned = functions::call(self, "rot", vec![curve.turned.clone()], span)?;
+                let place = Value { shape: vec![2], items, span };
+                let place = self.operator(Operator::Multiply, &turned, &place, span)?;
+                return self.operator(Operator::Add, &curve.centre, &place, span);
+            }
+        };
         let turned = self.scalar(&curve.turned, "`turned`", span)?;
         let number = Quantity::Known(Dimension::NUMBER);
         let direction = self.binary_scalar(Binary::Add, angle, turned, number, span)?;
@@ -209,7 +245,18 @@ impl Elaborator<'_> {
         Err(self.fault(span, format!("`{name}` is no curve"), help))
     }
 
-    fn seen(&mut self, curve: &Curve, point: &Value, span: Span) -> Result<Seen, Fault> {
+    /// `function` is the function of the language, or `on`.
+    fn seen(&mut self, curve: &Curve, function: &str, point: &Value, span: Span) -> Result<Seen, Fault> {
+        let CurveForm::Polar(of) = &curve.form else {
+            let then = match function {
+                "on" => "and the row `w_gap == 0m;`",
+                "outward" => "its normal is `w_normal`",
+                _ => "its distance is `w_gap`",
+            };
+            let message = format!("`{function}` sees a curve from its centre, and this one is parametric");
+            let help = format!("write `foot w of A on rim within 8mm near 0deg;`, {then}");
+            return Err(self.fault(span, message, help));
+        };
         is_point(self, point, "a point on a curve")?;
         let from = self.operator(Operator::Subtract, point, &curve.centre, span)?;
         let [x, y] = from.items.as_slice() else { return Err(Fault) };
@@ -219,15 +266,20 @@ impl Elaborator<'_> {
         let polar = self.binary_scalar(Binary::Atan2, y, x, number, span)?;
         let turned = self.scalar(&curve.turned, "`turned`", span)?;
         let angle = self.binary_scalar(Binary::Subtract, polar, turned, number, span)?;
-        let radius = self.radius(curve, 0, angle, span)?;
-        Ok(Seen { from: [x, y], r, radius, angle })
+        let radius = self.of_angle(of, 0, angle, span)?;
+        Ok(Seen { from: [x, y], r, radius, angle, of: of.clone() })
     }
 
-    /// R, or its derivative of this order, at an angle.
-    fn radius(&mut self, curve: &Curve, order: u8, angle: Scalar, span: Span) -> Result<Scalar, Fault> {
+    /// A function of a curve, or its derivative of this order, at an angle.
+    fn of_angle(
+        &mut self,
+        (function, name): &(Callable, String),
+        order: u8,
+        angle: Scalar,
+        span: Span,
+    ) -> Result<Scalar, Fault> {
         let angle = Value::scalar(angle, span);
-        let called = (curve.function.as_str(), order);
-        let value = functions::call_declared(self, curve.radius, called, vec![angle], span)?;
+        let value = functions::call_declared(self, *function, (name, order), vec![angle], span)?;
         self.scalar(&value, "a curve", span)
     }
 
@@ -248,7 +300,7 @@ impl Resolver<'_> {
     ) -> Result<(), Fault> {
         let residual = self.elaborate(Reach::Position, |work| {
             let (point, curve) = (work.value(point), work.curve_of(&curve.text, curve.span));
-            let seen = work.seen(&curve?, &point?, span)?;
+            let seen = work.seen(&curve?, "on", &point?, span)?;
             work.binary_scalar(Binary::Subtract, seen.r, seen.radius, seen.r.quantity, span)
         })?;
         self.push_row(

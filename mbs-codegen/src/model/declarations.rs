@@ -226,9 +226,8 @@ impl Declarations<'_> {
             own.map(|statement| &statement.kind).filter(|kind| !is_late(kind)).collect();
         let definitions = own.iter().filter_map(|kind| match kind {
             StatementKind::Let { name, value, .. } => Some((*kind, name, Cow::Borrowed(value))),
-            StatementKind::Curve { name, centre, radius, number } => {
-                let number = number.as_ref().map_or(&[][..], |number| &number.code);
-                let code = [centre.code.as_slice(), radius.code.as_slice(), number].concat();
+            StatementKind::Curve { name, .. } => {
+                let code = kind.expressions().into_iter().flat_map(|part| part.code.clone()).collect();
                 Some((*kind, name, Cow::Owned(Expression { code })))
             }
             _ => None,
@@ -241,8 +240,8 @@ impl Declarations<'_> {
                 Some((StatementKind::Let { name, unit, value }, ..)) => self
                     .elaborate(|work| definition(work, &name.text, unit.as_ref(), value))
                     .map(|(value, needs)| (name, needs, self.names.define(&name.text, value))),
-                Some((StatementKind::Curve { name, centre, radius, number }, ..)) => self
-                    .curve(centre, radius, number.as_ref())
+                Some((StatementKind::Curve { name, centre, turned, functions }, ..)) => self
+                    .curve(centre, turned, functions)
                     .map(|(curve, needs)| (name, needs, self.names.define_curve(&name.text, curve))),
                 _ => continue,
             };

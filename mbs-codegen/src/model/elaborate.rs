@@ -7,7 +7,7 @@ use super::counts::follows_literals;
 use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::functions;
-use super::names::{CONSTANTS, Callable, PARTIAL, RESERVED, Symbol, is_function, is_of_two};
+use super::names::{CONSTANTS, Callable, CurveForm, PARTIAL, RESERVED, Symbol, is_function, is_of_two};
 use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
 use super::unit_inference::Bare;
@@ -293,8 +293,18 @@ impl Elaborator<'_> {
                 let message = format!("`{name}` is a function");
                 return Err(self.fault(span, message, format!("write `{name}(…)`")));
             }
-            Some(Symbol::Curve(_)) => {
-                let help = format!("write `A on {name}` in a constraint, or `distance(A, {name})`");
+            Some(Symbol::Curve(curve)) => {
+                let help = match curve.form {
+                    CurveForm::Polar(_) => {
+                        format!("write `A on {name}` in a constraint, or `distance(A, {name})`")
+                    }
+                    CurveForm::Parametric(_) => {
+                        format!(
+                            "write `place(w, {name})`, or `foot w of A on {name} within 8mm near 90deg;`; on another curve it has a place, \
+                             `foot w of {name} at v on cam`"
+                        )
+                    }
+                };
                 return Err(self.fault(span, format!("`{name}` is a curve"), help));
             }
             Some(Symbol::Pending) => return Err(self.too_early(name, span)),

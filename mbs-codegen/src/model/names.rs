@@ -85,15 +85,22 @@ pub struct Callable {
     pub(super) bare: Bare,
 }
 
-/// A curve by its polar radius.
+/// A curve by its polar radius, or by two components over a parameter.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    pub(super) radius: Callable,
-    /// Name of the radius.
-    pub(super) function: String,
+    pub(super) form: CurveForm,
     pub(super) centre: Value,
     /// Angle by which it is turned.
     pub(super) turned: Value,
+}
+
+/// Functions of a curve with their names.
+#[derive(Clone, Debug)]
+pub enum CurveForm {
+    /// The polar radius.
+    Polar((Callable, String)),
+    /// Both components in the axes of the curve.
+    Parametric([(Callable, String); 2]),
 }
 
 /// Meaning of a name.

@@ -388,8 +388,16 @@ pub fn meant_function(name: &str, arguments: &[String]) -> Option<String> {
             format!("leave it out: `{first}` is in rad, and `mbs` shows angles in degrees")
         }
         "circle" => {
-            format!("a curve is that of the centre of a circle that rolls on it: write the centre, `{first}`")
+            format!(
+                "a curve is that of the centre of a circle that rolls on it: write the centre, `{first}`; on a contour write \
+                 `foot w of circle({}) on cam within 20mm;` and the row `w_gap == 0m;`",
+                arguments.join(", ")
+            )
         }
+        "flat" => format!(
+            "write `foot w of flat({}) on cam within 80mm;` and the row `w_gap == 0m;`",
+            arguments.join(", ")
+        ),
         "radians" | "deg2rad" => format!("a number takes its unit: `{first}deg`"),
         "sind" | "cosd" | "tand" => format!("write `{}({first}deg)`", name.trim_end_matches('d')),
         _ => {

@@ -1,6 +1,6 @@
 //! Warnings about a text without faults: a macro cannot warn, a program can.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Span, TokenStream, TokenTree};
 
@@ -51,8 +51,16 @@ fn unused(text: &Text, warnings: &mut Diagnostics) {
             }
         }
     }
+    // What a foot declares stands at the name of its coordinate, and nowhere in the source.
+    let place = |name: &Name| (name.span.start().line, name.span.start().column);
+    let feet = text.statements.iter().filter_map(|statement| match &statement.kind {
+        StatementKind::Coord { name, .. } => Some(place(name)),
+        _ => None,
+    });
+    let feet: BTreeSet<_> = feet.collect();
     for statement in &text.statements {
         let (word, name): (&str, &Name) = match &statement.kind {
+            StatementKind::Let { name, .. } if feet.contains(&place(name)) => continue,
             StatementKind::Const { name, .. } => ("constant", name),
             StatementKind::Param { name, .. } => ("parameter", name),
             StatementKind::Input { name, .. } => ("input", name),

@@ -193,14 +193,14 @@ pub enum StatementKind {
         name: Name,
         signature: Signature,
     },
-    /// `curve name = polar R about centre turned angle;`
+    /// `curve name = polar R about centre turned angle;` or `curve name = parametric x, y about centre turned angle;`
     Curve {
         name: Name,
         centre: Expression,
-        /// R at the angle by which the curve is turned: the angle, then the call.
-        radius: Expression,
-        /// Number of R in an array of functions.
-        number: Option<Expression>,
+        /// The angle by which it is turned.
+        turned: Expression,
+        /// R, or x and y: a call, and the number in an array of functions.
+        functions: Vec<(Expression, Option<Expression>)>,
     },
     Constraint {
         name: Name,
@@ -428,8 +428,9 @@ impl StatementKind {
             StatementKind::Function { signature, .. } => {
                 signature.value.shape.iter().chain(&signature.period).collect()
             }
-            StatementKind::Curve { centre, radius, number, .. } => {
-                [centre, radius].into_iter().chain(number).collect()
+            StatementKind::Curve { centre, turned, functions, .. } => {
+                let parts = functions.iter().flat_map(|(call, number)| [Some(call), number.as_ref()]);
+                [centre, turned].into_iter().chain(parts.flatten()).collect()
             }
             StatementKind::Constraint { within, items, .. } => {
                 within.iter().chain(items.iter().flat_map(Item::expressions)).collect()

@@ -6,7 +6,7 @@ use super::quotation::{inside, length_of_group, quoted, up_to_comma};
 use super::tokens::{Token, TokenKind};
 
 /// Words that begin a declaration elsewhere, and the statement that they mean.
-const STATEMENTS_ELSEWHERE: [(&str, &str); 44] = [
+const STATEMENTS_ELSEWHERE: [(&str, &str); 46] = [
     ("parameter", "param"),
     ("parameters", "param"),
     ("constant", "const"),
@@ -38,6 +38,8 @@ const STATEMENTS_ELSEWHERE: [(&str, &str); 44] = [
     ("assembly", "branch"),
     ("configuration", "branch"),
     ("range", "limit"),
+    ("contour", "curve"),
+    ("profile", "curve"),
     ("fn", "function"),
     ("func", "function"),
     ("rod", "body"),

@@ -132,9 +132,29 @@ scene Short = short;
 ";
 
 /// Every statement of the language occurs in one of them.
-pub const TEXTS: [&str; 5] = [FOUR_BAR, PRESS, MACHINE, ARM, DRAWN];
+/// Curves and what touches them.
+const CAMS: &str = "
+pub mechanism Cams;
+function r: m(rad), C4, periodic TAU;
+function xy: [m; 2](rad), C4, periodic TAU;
+coord y: [m; 3] = 0.1m;
+curve cam = polar r about [0m, 0m] turned t*3/1s;
+curve rim = parametric xy[0], xy[1] about [0m, y[2]] turned -1rad;
+foot u of circle([0, y[0]], 5mm) turned 2*t/1s on rim within 1m near 90deg;
+foot v of flat([0m, y[1]], 80deg) on cam within 0.1m;
+foot w of rim at z on cam within 8mm near 1, -2;
+constraint rides { u_gap == 0; v_gap == 0m; w_gap == 0m; }
+out slip: [m/s; 3] = [u_slip, v_slip, w_slip];
+";
 
-pub const SOUP: [&str; 112] = [
+pub const TEXTS: [&str; 6] = [FOUR_BAR, PRESS, MACHINE, ARM, DRAWN, CAMS];
+
+pub const SOUP: [&str; 117] = [
+    "foot",
+    "circle",
+    "flat",
+    "parametric",
+    "within",
     "const",
     "param",
     "input",

@@ -1,12 +1,12 @@
-//! The nearest point of a polar curve, among all feet of perpendiculars.
+//! The nearest point of a closed curve, among all feet of perpendiculars.
 
 use core::error::Error;
 use core::fmt;
 
 use crate::driver::SMOOTH;
-use crate::driver::curve_bounds::{Cell, CurveBounds, FINEST, Waiting, squared};
+use crate::driver::closed_curve::{Polar, Searched};
+use crate::driver::curve_bounds::{Cell, CurvePart, FINEST, Waiting};
 use crate::mechanism::function::Function;
-use crate::scalar::interval::Interval;
 use crate::scalar::number::Real;
 
 /// Roundings of the largest length by which distances may be off.
@@ -79,37 +79,37 @@ impl<R: Real> Error for FootError<R> {}
 /// # Ok::<(), mbs_runtime::driver::FootError<f64>>(())
 /// ```
 pub fn nearest_foot<R: Real, F: Function<R>>(radius: &F, point: [R; 2]) -> Result<Foot<R>, FootError<R>> {
+    const { assert!(F::ORDER >= 2 && F::ORDER <= SMOOTH) };
+    nearest(&Polar(radius), point)
+}
+
+pub(super) fn nearest<R: Real, C: Searched<R>>(curve: &C, point: [R; 2]) -> Result<Foot<R>, FootError<R>> {
     /// Parts of a turn at whose borders the distance is looked at first.
     const FIRST: u32 = 6;
-    const { assert!(F::ORDER >= 2 && F::ORDER <= SMOOTH) };
     let place = point.map(R::to_f64);
-    let bounds = |cell: Cell| CurveBounds::of(radius, cell.ends()).ok_or(FootError::NoBounds);
-    let whole = bounds(Cell::TURN)?.radius;
+    let bounds = |cell: Cell| curve.part(cell.ends()).ok_or(FootError::NoBounds);
+    let whole = bounds(Cell::TURN)?;
     let [x, y] = place.map(f64::abs);
-    let largest = whole.high().max(-whole.low()) + x + y;
+    let largest = whole.largest() + x + y;
     // Widths of a distance, and of half the derivative of its square.
     let noise = ROUNDINGS * R::EPSILON.to_f64() * largest;
-    let mut search = Search { radius, point, known: f64::INFINITY, best: None, second: None };
+    let steep = noise * largest.max(whole.fastest());
+    let mut search = Search { curve, point, known: f64::INFINITY, best: None, second: None };
     let first = Cell { index: 0, level: FIRST };
     (0..first.count()).for_each(|index| search.look(first.border(index)));
     let (mut waiting, mut parts) = (Waiting::from(Cell::TURN), 0_u32);
     while let Some(cell) = waiting.next() {
-        let curve = bounds(cell)?;
+        let part = bounds(cell)?;
         let undecided = FootError::Undecided(cell.middle());
-        let [along, across] = curve.components(place);
-        let off = along - curve.radius;
-        if (squared(off) + squared(across)).low() > squares(search.known + noise) {
+        let [square, falling, curved] = part.beside(place);
+        if square.low() > squares(search.known + noise) {
             continue;
         }
-        // Half the first and the second derivative of the squared distance.
-        let falling = off * curve.slope + across * curve.radius;
-        let is_off = falling.low() > noise * largest || falling.high() < -noise * largest;
-        if curve.radius.low() > 0.0 && is_off {
+        let is_off = falling.low() > steep || falling.high() < -steep;
+        if part.is_regular() && is_off {
             continue;
         }
-        let twice = across * curve.slope * Interval::of(2.0);
-        let curved = squared(curve.slope) + squared(curve.radius) - off * (curve.bend - curve.radius) - twice;
-        if curve.radius.low() > 0.0 && curved.low() > 0.0 {
+        if part.is_regular() && curved.low() > 0.0 {
             search.foot_within(cell);
             continue;
         }
@@ -133,8 +133,8 @@ fn squares(value: f64) -> f64 {
     value * value
 }
 
-struct Search<'a, R, F> {
-    radius: &'a F,
+struct Search<'a, R, C> {
+    curve: &'a C,
     point: [R; 2],
     /// The least distance of a place that was looked at.
     known: f64,
@@ -143,18 +143,10 @@ struct Search<'a, R, F> {
     second: Option<(R, R)>,
 }
 
-impl<R: Real, F: Function<R>> Search<'_, R, F> {
-    /// Distance of the point from a place, half the derivatives of its square, and the distance off the curve, signed.
+impl<R: Real, C: Searched<R>> Search<'_, R, C> {
+    /// As [`Searched::beside`], of the point.
     fn at(&self, w: R) -> [R; 4] {
-        let [r, slope, bend] = self.radius.jet::<3>(w);
-        let ([sine], [cosine]) = R::sin_cos([w]);
-        let [x, y] = self.point;
-        let (off, across) = (x * cosine + y * sine - r, y * cosine - x * sine);
-        let rising = -(off * slope + across * r);
-        let curved = slope * slope + r * r - off * (bend - r) - across * (slope + slope);
-        // (A − c) × c′ over |c′|.
-        let signed = (off * r - across * slope) / slope.hypot(r);
-        [off.hypot(across), rising, curved, signed]
+        self.curve.beside(w, self.point)
     }
 
     fn look(&mut self, w: f64) {

@@ -21,6 +21,7 @@
 
 pub(crate) mod basis;
 pub(crate) mod bounded;
+pub(crate) mod closed_curve;
 pub(crate) mod cubic_fit;
 pub(crate) mod cubic_spline;
 pub(crate) mod curve_bounds;
@@ -42,6 +43,7 @@ pub(crate) mod trapezoidal;
 pub(crate) mod triangle;
 
 pub use bounded::Bounded;
+pub use closed_curve::{ClosedCurve, Parametric, Polar};
 pub use cubic_fit::{CubicRow, End, fit_cubic};
 pub use cubic_spline::CubicSpline;
 pub use enclosures::centred;

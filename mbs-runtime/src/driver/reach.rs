@@ -1,19 +1,20 @@
-//! Reach of a polar curve: the distance below which every point has one nearest point on it.
+//! Reach of a closed curve: the distance below which every point has one nearest point on it.
 
 use core::error::Error;
 use core::f64::consts::{PI, TAU};
 use core::fmt;
 
 use crate::driver::SMOOTH;
-use crate::driver::curve_bounds::{Cell, CurveBounds, FINEST, Waiting, squared};
+use crate::driver::closed_curve::{Polar, Searched};
+use crate::driver::curve_bounds::{Cell, CurvePart, FINEST, Waiting, squared};
 use crate::mechanism::function::Function;
 use crate::scalar::interval::Interval;
 use crate::scalar::number::Real;
 
 /// Angles of a turn at which the curve is looked at first.
-const PLACES: usize = 360;
+pub(super) const PLACES: usize = 360;
 /// Part of the reach that is found which is not given away, for what the bounds of parts are wider than their values.
-const SAFETY: f64 = 1.0 / 256.0;
+pub(super) const SAFETY: f64 = 1.0 / 256.0;
 /// Smaller improvements of what is found do not count.
 const IMPROVEMENT: f64 = 1.0 / 1024.0;
 /// Halvings of the distance of two angles around the narrowest place: to rounding.
@@ -31,6 +32,12 @@ pub enum ReachError {
     NoBounds,
     /// The bounds do not decide at this polar angle (rad): the radius is not above zero, or the parts that are looked at are too many.
     Undecided(f64),
+    /// A parametric curve whose outside lies to the left of its way.
+    Clockwise,
+    /// The curve is hollow or straight at this place (rad).
+    Hollow(f64),
+    /// Two curves touch at several places at once: the hollow of one is sharper than the other one.
+    Narrow,
 }
 
 impl fmt::Display for ReachError {
@@ -42,6 +49,16 @@ impl fmt::Display for ReachError {
             ),
             ReachError::Undecided(angle) => {
                 write!(f, "the curve has no reach that its bounds show, at the polar angle of {angle} rad")
+            }
+            ReachError::Clockwise => f.write_str(
+                "the curve is gone through clockwise, so its gaps would have the wrong sign; take the parameter the other way round",
+            ),
+            ReachError::Hollow(angle) => write!(
+                f,
+                "the curve is hollow or straight at the place {angle} rad; a flat face needs a convex curve, and of two curves one is convex"
+            ),
+            ReachError::Narrow => {
+                f.write_str("the hollow of one curve is sharper than the other curve, so they touch at several places at once")
             }
         }
     }
@@ -57,7 +74,8 @@ impl Error for ReachError {}
 /// `radius` is asked for two derivatives and has a period of a turn.
 ///
 /// The narrowest place is searched among 360 angles, and by [bounds](Function::enclosure) of the function in all parts between them.
-/// So nothing is too narrow to be seen. The result is below the reach, by 1/256 of it at most. Takes 20 kB of stack.
+/// So nothing is too narrow to be seen. The result is below the reach, by 1/256 of it at most,
+/// in single precision by an eighth. Takes 20 kB of stack.
 ///
 /// The reach is the least radius of curvature or half the shortest chord that is normal to the curve at both ends.
 /// Source: Federer 1959, Curvature measures, §4; Litherland, Simon, Durumeric & Rawdon 1999, Thickness of knots.
@@ -75,11 +93,21 @@ impl Error for ReachError {}
 /// ```
 pub fn reach<R: Real, F: Function<R>>(radius: &F) -> Result<[R; 2], ReachError> {
     const { assert!(F::ORDER >= 2 && F::ORDER <= SMOOTH) };
-    let whole = CurveBounds::of(radius, Cell::TURN.ends()).ok_or(ReachError::NoBounds)?;
-    let places: [Place<R>; PLACES] = core::array::from_fn(|k| Place::of(radius, angle(k)));
+    least_circles(&Polar(radius))
+}
+
+/// Radii of the largest circles inside and outside.
+pub(super) fn least_circles<R: Real, C: Searched<R>>(curve: &C) -> Result<[R; 2], ReachError> {
+    let whole = curve.part(Cell::TURN.ends()).ok_or(ReachError::NoBounds)?;
+    let places: [Place<R>; PLACES] = core::array::from_fn(|k| curve.place(angle(k)));
+    let next = places.iter().skip(1).chain(&places);
+    let areas = places.iter().zip(next).map(|(one, next)| cross(one.point, next.point));
+    if areas.fold(R::constant(0.0), |sum, area| sum + area) < R::constant(0.0) {
+        return Err(ReachError::Clockwise);
+    }
     let side = |side: f64| {
         let mut narrowest =
-            Narrowest { radius, side: R::constant(side), least: R::constant(f64::INFINITY), at: [0.0; 2] };
+            Narrowest { curve, side: R::constant(side), least: R::constant(f64::INFINITY), at: [0.0; 2] };
         for (k, place) in places.iter().enumerate() {
             for (l, other) in places.iter().enumerate() {
                 let found =
@@ -90,7 +118,7 @@ pub fn reach<R: Real, F: Function<R>>(radius: &F) -> Result<[R; 2], ReachError> 
             }
         }
         narrowest.refine(TAU / PLACES as f64);
-        let cap = LARGEST * whole.radius.high();
+        let cap = LARGEST * whole.largest();
         let is_capped = narrowest.bends_are_known(side, cap)?;
         narrowest.chords_are_known(side, cap)?;
         let least = narrowest.least * R::constant(1.0 - SAFETY);
@@ -99,20 +127,24 @@ pub fn reach<R: Real, F: Function<R>>(radius: &F) -> Result<[R; 2], ReachError> 
     Ok([side(-1.0)?, side(1.0)?])
 }
 
-fn angle(place: usize) -> f64 {
+pub(super) fn angle(place: usize) -> f64 {
     TAU * place as f64 / PLACES as f64
 }
 
+fn cross<R: Real>(a: [R; 2], b: [R; 2]) -> R {
+    a[0] * b[1] - a[1] * b[0]
+}
+
 /// The narrowest place that is known on a side: the least circle that touches the curve and passes it elsewhere.
-struct Narrowest<'a, R, F> {
-    radius: &'a F,
+struct Narrowest<'a, R, C> {
+    curve: &'a C,
     /// 1 outside, −1 inside.
     side: R,
     least: R,
     at: [f64; 2],
 }
 
-impl<R: Real, F: Function<R>> Narrowest<'_, R, F> {
+impl<R: Real, C: Searched<R>> Narrowest<'_, R, C> {
     /// Moves both angles to a place as narrow as there is nearby, by steps from `step` on.
     fn refine(&mut self, step: f64) {
         let mut step = step;
@@ -133,11 +165,11 @@ impl<R: Real, F: Function<R>> Narrowest<'_, R, F> {
     fn between(&self, [at, other]: [f64; 2]) -> R {
         /// Distance of angles below which the difference of places has lost too many digits.
         const NEAR: f64 = 1e-3;
-        let place = Place::of(self.radius, at);
+        let place = self.curve.place(at);
         if (at - other).abs() < NEAR {
             place.bend(self.side)
         } else {
-            place.circle(&Place::of(self.radius, other), self.side)
+            place.circle(&self.curve.place(other), self.side)
         }
     }
 
@@ -159,10 +191,10 @@ impl<R: Real, F: Function<R>> Narrowest<'_, R, F> {
     fn bends_are_known(&mut self, side: f64, cap: f64) -> Result<bool, ReachError> {
         let (mut waiting, mut parts, mut is_capped) = (Waiting::from(Cell::TURN), 0, false);
         while let Some(cell) = waiting.next() {
-            let bounds = CurveBounds::of(self.radius, cell.ends()).ok_or(ReachError::NoBounds)?;
+            let bounds = self.curve.part(cell.ends()).ok_or(ReachError::NoBounds)?;
             let curvature = bounds.curvature();
             let hollow = if side > 0.0 { -curvature.low() } else { curvature.high() };
-            if bounds.radius.low() > 0.0 {
+            if bounds.is_regular() {
                 if hollow <= 0.0 || hollow * self.claimed() <= 1.0 {
                     continue;
                 }
@@ -207,7 +239,7 @@ impl<R: Real, F: Function<R>> Narrowest<'_, R, F> {
 
     /// `true` if no chord between both parts is normal at both ends, on this side and short enough to matter.
     fn has_no_chord(&self, [one, other]: [Cell; 2], side: f64, cap: f64) -> Result<bool, ReachError> {
-        let bounds = |angles: [f64; 2]| CurveBounds::of(self.radius, angles).ok_or(ReachError::NoBounds);
+        let bounds = |angles: [f64; 2]| self.curve.part(angles).ok_or(ReachError::NoBounds);
         let (here, there) = (bounds(one.ends())?, bounds(other.ends())?);
         let ([x, y], [u, v]) = (here.points(), there.points());
         let chord = [u - x, v - y];
@@ -243,27 +275,17 @@ impl<R: Real, F: Function<R>> Narrowest<'_, R, F> {
 }
 
 /// A point of the curve with its unit normal outwards, and its curvature, positive where it is convex.
-#[derive(Clone, Copy)]
-struct Place<R> {
-    point: [R; 2],
-    normal: [R; 2],
-    curvature: R,
+#[derive(Clone, Copy, Debug)]
+pub struct Place<R> {
+    /// The point (m).
+    pub point: [R; 2],
+    /// Its normal.
+    pub normal: [R; 2],
+    /// Its curvature (1/m).
+    pub curvature: R,
 }
 
 impl<R: Real> Place<R> {
-    fn of<F: Function<R>>(radius: &F, angle: f64) -> Self {
-        let w = R::constant(angle);
-        let [r, slope, bend] = radius.jet::<3>(w);
-        let ([sine], [cosine]) = R::sin_cos([w]);
-        let length = (r * r + slope * slope).sqrt();
-        let (along, across) = (r / length, slope / length);
-        Place {
-            point: [r * cosine, r * sine],
-            normal: [along * cosine + across * sine, along * sine - across * cosine],
-            curvature: (r * r + (slope * slope + slope * slope) - r * bend) / (length * length * length),
-        }
-    }
-
     /// Radius of curvature on the side where it is concave, else without bound; `side` is 1 outside, −1 inside.
     fn bend(&self, side: R) -> R {
         let hollow = R::constant(0.0) - side * self.curvature;

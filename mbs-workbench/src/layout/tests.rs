@@ -42,6 +42,14 @@ fn words_keep_a_blank_before_a_vector_and_names_have_none_before_an_index() {
     let curves = "force f: [1N, 0] on [0, y];\nfoot f of [x, y] on c within 1m near [1][0];\n\
                   curve c = polar r about [0, 0] turned [1][0];\n";
     statements(curves, curves);
+    statements(
+        "curve  c=parametric x[0],y about [0,0] turned psi ;foot w of circle ([x,y],1mm) turned -psi on c within 1m;\
+         foot w of flat( [x, y],90deg ) on c within 1m near 0;foot w of c at  v on e within 1m near -1,[1][0];",
+        "curve c = parametric x[0], y about [0, 0] turned psi;\n\
+         foot w of circle([x, y], 1mm) turned -psi on c within 1m;\n\
+         foot w of flat([x, y], 90deg) on c within 1m near 0;\n\
+         foot w of c at v on e within 1m near -1, [1][0];\n",
+    );
 }
 
 #[test]

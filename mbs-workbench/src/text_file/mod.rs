@@ -442,4 +442,14 @@ mod tests {
         let error = TextFile::read(&open).expect_err("a bracket");
         assert!(error.to_string().contains("close every bracket"), "{error}");
     }
+
+    #[test]
+    fn names_of_feet_are_no_unused_ones() {
+        let feet = "mechanism Rim; function x: [m; 2](rad), C4, periodic TAU; coord h: m = 1; param none: 1 = 1; \
+            curve rim = parametric x[0], x[1] about [0m, 0m]; curve pad = parametric x[1], x[0] about [0m, h]; \
+            foot r of pad at v on rim within 1m; constraint meets { r_gap == 0m; } out there: [m; 2] = v_place;";
+        let found = checked(&file("feet.mbs", feet)).expect("a text");
+        let messages: Vec<&str> = found.warnings.iter().map(|warning| warning.message.as_str()).collect();
+        assert_eq!(messages, ["parameter `none` is used nowhere"], "{:?}", found.faults);
+    }
 }

@@ -44,17 +44,13 @@ mechanism! {
     function pitch: m(rad), C3, periodic TAU;
     coord theta: rad = 0;
     coord y: m = 30mm;
-    coord w: rad = 60deg;
-    let A = [0m, y];
-    let foot = pitch(w)*unit(w + theta);
-    let along = d(foot, w);
-    constraint perpendicular { dot(A - foot, along) == 0 [m^2]; }
-    branch nearest: dot(A - foot, d(along, w)) < dot(along, along);
+    curve cam = polar pitch about [0m, 0m] turned theta;
+    foot w of [0m, y] on cam within 24mm near 60deg;
     drive shaft: theta == speed*t;
     body follower { mass: 100gram, com: [0, y] }
     tsda spring { from: [0, 90mm], to: [0, y], stiffness: 4000, length: 80mm }
     contact face {
-        gap: dot(A - foot, [along.1, -along.0])/norm(along),
+        gap: w_gap,
         stiffness: 1e8,
         exponent: 1.5,
         depth: 1mm,
@@ -92,7 +88,10 @@ macro_rules! heights {
         let run = Simulation::start_from_text(mechanism, method, 0.0).expect("it starts");
         let mut run = run.with_tolerance(Tolerance::new(1e-11));
         let mut found = Vec::new();
-        run.watch(2.0 * TAU / mechanism.speed, 200, |run| found.push(run.q()[1])).expect("it moves");
+        run.watch(2.0 * TAU / mechanism.speed, 200, |run| {
+            found.push([run.q()[1], run.q()[2.min(run.q().len() - 1)]])
+        })
+        .expect("it moves");
         found
     }};
 }
@@ -100,8 +99,8 @@ macro_rules! heights {
 #[test]
 fn a_contact_by_the_foot_of_the_perpendicular_is_exact() {
     let (by_foot, by_centres) = (heights!(ByFoot::<_, f64>::new(CAM)), heights!(ByCentres::<f64>::default()));
-    let apart = by_foot.iter().zip(&by_centres).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let stroke = by_centres.iter().fold(0.0_f64, |most, y| most.max((y - by_centres[0]).abs()));
+    let apart = by_foot.iter().zip(&by_centres).map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max);
+    let stroke = by_centres.iter().fold(0.0_f64, |most, y| most.max((y[0] - by_centres[0][0]).abs()));
     println!("contact by the foot: {apart:.1e} m of 1e-9, stroke {:.1} mm", 1e3 * stroke);
     assert!(apart < 1e-9 && stroke > 5e-3, "{apart:e} {stroke}");
 }
@@ -112,23 +111,15 @@ mechanism! {
     function pitch: m(rad), C3, periodic TAU;
     coord theta: rad = 0.3;
     coord y: m = 26mm;
-    coord u: rad = 70deg;
-    let foot = pitch(u)*unit(u + theta);
-    let along = d(foot, u);
     drive shaft: theta == 0.3 + 1 [rad/s]*t;
-    constraint touches { y == foot.1; }
-    constraint lies_flat { along.1 == 0m; }
-    branch upper: along.0 < 0m;
+    curve cam = polar pitch about [0m, 0m] turned theta;
+    foot u of flat([0m, y], 90deg) on cam within 26mm near 70deg;
+    constraint touches { u_gap == 0m; }
 
     coord psi: rad = 1.9;
-    coord v: rad = -15deg;
-    coord w: rad = 75deg;
-    let one = pitch(v)*unit(v + theta);
-    let other = [60mm, 0mm] + pitch(w)*unit(w + psi);
-    let tangent = d(one, v);
-    constraint meets { one == other; }
-    constraint rolls { cross(tangent, d(other, w)) == 0 [m^2]; }
-    branch outside: dot(tangent, d(other, w)) < 0 [m^2];
+    curve other = polar pitch about [60mm, 0mm] turned psi;
+    foot v of other at w on cam within 20mm near -15deg, 75deg;
+    constraint meets { v_gap == 0m; }
     out height: m = y;
     out turned: rad = psi;
 }
@@ -189,17 +180,13 @@ mechanism! {
     function py: m(rad), C3, periodic TAU;
     coord theta: rad = 90deg;
     coord y: m = 56mm;
-    coord u: rad = 0;
-    let A = [0m, y];
-    let foot = rot(theta)*[px(u), py(u)];
-    let along = d(foot, u);
-    constraint perpendicular { dot(A - foot, along) == 0 [m^2]; }
-    branch nearest: dot(A - foot, d(along, u)) < dot(along, along);
+    curve rim = parametric px, py about [0m, 0m] turned theta;
+    foot u of [0m, y] on rim within 24mm near 0;
     drive shaft: theta == 90deg + 25deg*sin(speed*t);
     body follower { mass: 100gram, com: [0, y] }
     tsda spring { from: [0, 120mm], to: [0, y], stiffness: 4000, length: 80mm }
     contact face {
-        gap: dot(A - foot, [along.1, -along.0])/norm(along),
+        gap: u_gap,
         stiffness: 1e8,
         exponent: 1.5,
         depth: 1mm,
@@ -232,8 +219,70 @@ fn a_curve_with_a_parameter_need_not_surround_its_centre() {
     let [px, py] = [(0.0, 0.03), (0.25 * TAU, 0.0)].map(|(phase, beside)| Round { phase, beside });
     let by_parameter = heights!(ByParameter::<_, _, f64>::new(px, py));
     let by_both = heights!(ByBoth::<f64>::default());
-    let apart = by_parameter.iter().zip(&by_both).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let stroke = by_both.iter().fold(0.0_f64, |most, y| most.max((y - by_both[0]).abs()));
+    let apart = by_parameter.iter().zip(&by_both).map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max);
+    let stroke = by_both.iter().fold(0.0_f64, |most, y| most.max((y[0] - by_both[0][0]).abs()));
     println!("contact by a parameter: {apart:.1e} m of 1e-9, stroke {:.1} mm", 1e3 * stroke);
     assert!(apart < 1e-9 && stroke > 2e-3, "{apart:e} {stroke}");
+}
+
+mechanism! {
+    /// A flat-faced follower, and one whose foot is a cam too, each with clearance and friction.
+    pub mechanism Faces;
+    param speed: rad/s = 3000rpm;
+    function pitch: m(rad), C4, periodic TAU;
+    coord theta: rad = 0;
+    coord y: [m; 2] = [27mm, 52mm];
+    drive shaft: theta == speed*t;
+    curve cam = polar pitch about [0m, 0m] turned theta;
+    curve pad = polar pitch about [0m, y[1]] turned -60deg;
+    foot u of flat([0m, y[0]], 90deg) on cam within 26mm near 90deg;
+    foot v of pad at w on cam within 49mm near 80deg, 330deg;
+    for i in 0..2 { body followers { mass: 100gram, com: [0, y[i]] } }
+    tsda above { from: [0, 90mm], to: [0, y[0]], stiffness: 4000, length: 80mm }
+    tsda behind { from: [0, 130mm], to: [0, y[1]], stiffness: 4000, length: 100mm }
+    contact face { gap: u_gap, stiffness: 1e8, exponent: 1.5, depth: 1mm, damping: 0.3 }
+    contact nose { gap: v_gap, stiffness: 1e8, exponent: 1.5, depth: 1mm, damping: 0.3 }
+    force rub: -0.1*normal(nose)*tanh(v_slip/10 [cm/s])*v_tangent on y[1]*[0, 1];
+    start theta = 0 rate speed;
+    start y = [27mm, 55mm] rate [0, 0];
+}
+
+mechanism! {
+    /// The same from places of centres, normals and velocities of circles.
+    pub mechanism FacesByCentres;
+    param speed: rad/s = 3000rpm;
+    coord theta: rad = 0;
+    coord y: [m; 2] = [27mm, 52mm];
+    drive shaft: theta == speed*t;
+    let centre = 8mm*unit(theta);
+    let other = [0m, y[1]] + 8mm*unit(-60deg);
+    let n = (other - centre)/norm(other - centre);
+    let along = [-n.1, n.0];
+    // The cam's place at the contact turns with it; the pad does not turn.
+    let touch = centre + 25mm*n;
+    let slip = dot([0 [m/s], der(y[1])] - der(theta)*[-touch.1, touch.0], along);
+    for i in 0..2 { body followers { mass: 100gram, com: [0, y[i]] } }
+    tsda above { from: [0, 90mm], to: [0, y[0]], stiffness: 4000, length: 80mm }
+    tsda behind { from: [0, 130mm], to: [0, y[1]], stiffness: 4000, length: 100mm }
+    contact face { gap: y[0] - 8mm*sin(theta) - 25mm, stiffness: 1e8, exponent: 1.5, depth: 1mm, damping: 0.3 }
+    contact nose { gap: norm(other - centre) - 50mm, stiffness: 1e8, exponent: 1.5, depth: 1mm, damping: 0.3 }
+    force rub: -0.1*normal(nose)*tanh(slip/10 [cm/s])*along on y[1]*[0, 1];
+    start theta = 0 rate speed;
+    start y = [27mm, 55mm] rate [0, 0];
+}
+
+#[test]
+fn flat_faces_and_pads_with_clearance_are_exact() {
+    let by_feet = heights!(Faces::<_, f64>::new(CAM));
+    let by_centres = heights!(FacesByCentres::<f64>::default());
+    let apart = by_feet.iter().zip(&by_centres).map(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()));
+    let apart = apart.fold(0.0, f64::max);
+    let stroke =
+        |k: usize| by_centres.iter().fold(0.0_f64, |most, y| most.max((y[k] - by_centres[0][k]).abs()));
+    println!(
+        "flat face and pad with clearance: {apart:.1e} m of 1e-9, strokes {:.4} and {:.4} m",
+        stroke(0),
+        stroke(1)
+    );
+    assert!(apart < 1e-9 && stroke(0) > 5e-3 && stroke(1) > 5e-3, "{apart:e}");
 }

@@ -1,4 +1,4 @@
-//! Curves by their polar radius about a centre, and points beside them.
+//! Curves by their polar radius about a centre, or by two components; points beside them.
 
 use mbs_codegen::syntax_tree::{Expression, Operation};
 
@@ -16,16 +16,16 @@ pub struct Curve {
     pub rounds: Vec<Round>,
     /// Its centre.
     pub centre: Expression,
-    /// The angle by which it is turned, and the call of its radius behind it.
-    pub radius: Expression,
-    /// Number of its radius in an array of functions.
-    pub number: Option<Expression>,
+    /// The angle by which it is turned.
+    pub turned: Expression,
+    /// Its polar radius, or its two components: a call, and the number in an array of functions.
+    pub functions: Vec<(Expression, Option<Expression>)>,
 }
 
 /// A curve at a state.
 struct Placed<'a> {
-    function: &'a str,
-    index: Option<usize>,
+    /// Names of its functions, and their numbers in arrays.
+    functions: Vec<(&'a str, Option<usize>)>,
     centre: [Number; 2],
     angle: Number,
     scope: Scope<'a>,
@@ -47,16 +47,17 @@ fn two(value: &Value) -> Result<[Number; 2], Gap> {
 impl Curve {
     fn placed<'a>(&'a self, scope: &Scope<'a>) -> Result<Placed<'a>, Gap> {
         let scope = scope.within(&self.rounds);
-        let Some((call, angle)) = self.radius.code.split_last() else {
-            return Err(Gap(format!("the curve `{}`", self.name)));
-        };
-        let Operation::Call { function, .. } = &call.operation else {
-            return Err(Gap(format!("the curve `{}`", self.name)));
-        };
-        let index = self.number.as_ref().map(|number| value(number, &scope)?.count()).transpose()?;
-        let angle = value(&Expression { code: angle.to_vec() }, &scope)?.number()?;
+        let functions = self.functions.iter().map(|(call, number)| {
+            let Some(Operation::Call { function, .. }) = call.code.last().map(|call| &call.operation) else {
+                return Err(Gap(format!("the curve `{}`", self.name)));
+            };
+            let index = number.as_ref().map(|number| value(number, &scope)?.count()).transpose()?;
+            Ok((function.as_str(), index))
+        });
+        let functions = functions.collect::<Result<Vec<_>, Gap>>()?;
+        let angle = value(&self.turned, &scope)?.number()?;
         let centre = two(&value(&self.centre, &scope)?)?;
-        Ok(Placed { function, index, centre, angle, scope })
+        Ok(Placed { functions, centre, angle, scope })
     }
 
     /// r − R of a point: 0 on the curve.
@@ -71,6 +72,12 @@ impl Curve {
         let placed = self.placed(scope)?;
         if function == "place" {
             let w = argument.number()?;
+            if placed.functions.len() == 2 {
+                let [x, y] = [placed.function(0, w, 0)?, placed.function(1, w, 0)?];
+                let [cosine, sine] = unit(placed.angle)?;
+                let place = [cosine * x - sine * y, sine * x + cosine * y];
+                return Ok(Value::vector([0, 1].map(|k| placed.centre[k] + place[k]).to_vec()));
+            }
             let radius = placed.radius(w, 0)?;
             let direction = unit(w + placed.angle)?;
             let place = [0, 1].map(|k| placed.centre[k] + radius * direction[k]);
@@ -95,7 +102,15 @@ fn unit(angle: Number) -> Result<[Number; 2], Gap> {
 
 impl Placed<'_> {
     fn radius(&self, w: Number, order: usize) -> Result<Number, Gap> {
-        self.scope.laws().call(self.function, self.index, order, w)
+        match self.functions.len() {
+            1 => self.function(0, w, order),
+            _ => Err(Gap("the polar radius of a parametric curve".to_string())),
+        }
+    }
+
+    fn function(&self, place: usize, w: Number, order: usize) -> Result<Number, Gap> {
+        let (name, index) = *self.functions.get(place).ok_or_else(|| Gap("a curve".to_string()))?;
+        self.scope.laws().call(name, index, order, w)
     }
 
     fn seen(&self, point: [Number; 2]) -> Result<Seen, Gap> {

@@ -144,12 +144,12 @@ impl Oracle {
                         laws.known.insert(label, law);
                     }
                 }
-                StatementKind::Curve { name, centre, radius, number } => curves.push(Curve {
+                StatementKind::Curve { name, centre, turned, functions } => curves.push(Curve {
                     name: name.text.clone(),
                     rounds: rounds.clone(),
                     centre: centre.clone(),
-                    radius: radius.clone(),
-                    number: number.clone(),
+                    turned: turned.clone(),
+                    functions: functions.clone(),
                 }),
                 _ => {}
             }

@@ -147,6 +147,43 @@ fn curves_and_functions_of_the_caller_are_read() {
 }
 
 #[test]
+fn places_of_parametric_curves_are_read() {
+    let source = "mechanism Rim; function x: [m; 2](rad), C3, periodic TAU; coord theta: rad; coord w: rad; \
+        curve rim = parametric x[1], x[0] about [3mm, theta*1mm] turned theta; \
+        constraint at { place(w, rim).0 == 0m; } out there: [m; 2] = place(w, rim); out apart: m = distance([1m, 0m], rim);";
+    // x = 3 cos, y = 2 sin.
+    let ellipse = |name: &str| -> Option<Jet> {
+        let (a, b) = if name == "x[1]" { (3.0, 0.0) } else { (0.0, 2.0) };
+        Some(Rc::new(move |w: f64| {
+            let (sin, cos) = w.sin_cos();
+            vec![a * cos + b * sin, b * cos - a * sin, -a * cos - b * sin]
+        }))
+    };
+    let oracle = Oracle::with_functions(source, None, &|_| None, &ellipse).expect("a text");
+    let state =
+        OracleState { q: vec![0.7, 0.4], qd: vec![2.0, -0.3], qdd: vec![0.0; 2], ..OracleState::default() };
+    let place = |theta: f64, w: f64| {
+        let ((s, c), (sin, cos)) = (theta.sin_cos(), w.sin_cos());
+        [3e-3 + c * 3.0 * cos - s * 2.0 * sin, theta * 1e-3 + s * 3.0 * cos + c * 2.0 * sin]
+    };
+    let there = oracle.quantities("there", &state).expect("an output");
+    let rates = [0, 1].map(|k| {
+        let at = |h: f64| place(0.7 + 2.0 * h, 0.4 - 0.3 * h)[k];
+        (at(1e-5) - at(-1e-5)) / 2e-5
+    });
+    for (k, found) in there.iter().enumerate() {
+        assert!((found.value - place(0.7, 0.4)[k]).abs() < 1e-15, "{}", found.value);
+    }
+    let row = &oracle.rows(&state).expect("rows")[0];
+    assert!(
+        row.phi.is_some_and(|phi| (phi - place(0.7, 0.4)[0]).abs() < 1e-15)
+            && (row.rate - rates[0]).abs() < 1e-8
+    );
+    let apart = oracle.quantities("apart", &state);
+    assert!(matches!(&apart, Err(Gap(words)) if words.contains("parametric")));
+}
+
+#[test]
 fn parts_that_are_not_evaluated_are_named() {
     let with = |rest: &str| format!("{PENDULUM} {rest}");
     let oracle = read(&with("force pull: [reaction(rod, bob), 0] on p;"));

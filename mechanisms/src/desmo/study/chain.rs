@@ -225,7 +225,7 @@ pub fn spring(chain: &Chain) -> Result<Section, StudyError> {
         "opener on the valve (N)",
         "seat (N)",
         "off the law (mm)",
-        "opener off its cam or the valve, lift above 0.5 mm (%)",
+        "off the opener (%)",
     ]);
     let mut turns = Vec::new();
     for name in ["slow", "speed"] {
@@ -254,7 +254,7 @@ pub fn spring(chain: &Chain) -> Result<Section, StudyError> {
     let picture = pictures::lifts(chain, &turns);
     Ok(Section {
         title: "Ordinary valvetrain with a spring".to_string(),
-        text: vec!["The same text without the closing cam: a valve spring of `spring` and `spring_preload` keeps the valve on the opener. Where the law asks for more deceleration than the spring gives, the valve leaves its law.".to_string()],
+        text: vec!["The same text without the closing cam: a valve spring, of the parameters spring and spring_preload, keeps the valve on the opener. Where the law asks for more deceleration than the spring gives, the valve leaves its law. Off the opener: part of the time with a lift above 0.5 mm in which the opener does not touch its cam or the valve.".to_string()],
         tables: vec![table],
         pictures: vec![picture],
     })

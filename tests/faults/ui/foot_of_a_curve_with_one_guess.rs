@@ -1,0 +1,18 @@
+#![deny(warnings)]
+use mbs_runtime::mechanism;
+
+mechanism! {
+    pub mechanism Cam;
+    function x: [m; 2](rad), C3, periodic TAU;
+    function y: [m; 2](rad), C3, periodic TAU;
+    param bound: m = 8mm;
+    coord theta: rad = 0;
+    drive turn: theta == 10 [rad/s]*t;
+    curve rim = parametric x[0], y[0] about [0m, 0m] turned theta;
+    curve pad = parametric x[1], y[1] about [40mm, 0mm];
+    foot w of pad at v on rim within bound near 0deg;
+    out gap: m = w_gap;
+    out place: [m; 2] = v_place*sin(v);
+}
+
+fn main() {}

@@ -1,0 +1,16 @@
+#![deny(warnings)]
+use mbs_runtime::mechanism;
+
+mechanism! {
+    pub mechanism Cam;
+    function x: [m; 2](rad), C3, periodic TAU;
+    function y: [m; 2](rad), C3, periodic TAU;
+    param bound: m = 8mm;
+    coord theta: rad = 0;
+    drive turn: theta == 10 [rad/s]*t;
+    curve rim = parametric x[0] about [0m, 0m] turned theta;
+    foot w of [30mm + x[1](0), y[1](0)] on rim within bound;
+    out gap: m = w_gap;
+}
+
+fn main() {}
