@@ -4,7 +4,6 @@ use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::{Counts, Model, Solved};
 use crate::failure::Failure;
 use crate::linear_algebra::parts::at;
-use crate::linear_algebra::vectors::of_each;
 use crate::mechanism::Mechanism;
 use crate::mechanism::dynamic::{Dynamic, Partitioned};
 use crate::mechanism::transformed::Transformed;
@@ -186,11 +185,8 @@ where
         mechanism.complete(partition, &[zero; M], motion);
         *momentum = mechanism.mass_times(parameters, position, motion);
     }
-    let mut reduced = [[zero; F]; F];
-    for (row, motion) in reduced.iter_mut().zip(&motions) {
-        *row = of_each(&momenta, |momentum| dot(motion, momentum));
-    }
-    let (solution, inert) = solve_symmetric(reduced, of_each(&motions, |motion| dot(motion, &open)));
+    let reduced = motions.each_ref().map(|motion| momenta.each_ref().map(|momentum| dot(motion, momentum)));
+    let (solution, inert) = solve_symmetric(reduced, motions.each_ref().map(|motion| dot(motion, &open)));
     for ((motion, momentum), share) in motions.iter().zip(&momenta).zip(&solution) {
         add(&mut qdd, *share, motion);
         add(&mut open, -*share, momentum);
