@@ -42,6 +42,10 @@ pub(crate) const OF_REACH: Law = Law::ulps(16.0);
 /// Part of the largest value within a step up to which a value of an event function is none: roundings of some operations.
 pub(crate) const NO_VALUE: Law = Law::ulps(64.0);
 
+/// Gap over the size of its terms at the end of a step that was located there: roundings of the gap, of the time and of the polynomial of a
+/// step.
+pub(crate) const LOCATED: Law = Law::ulps(16.0);
+
 /// The same for nine values of which the polynomial tells nothing more: its coefficients add up 560 roundings.
 pub(crate) const BLURRED: Law = Law::ulps(2048.0);
 

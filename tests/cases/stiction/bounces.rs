@@ -108,11 +108,14 @@ fn impacts_are_where_gaps_are_none_in_single_precision_too() {
     let (mut adaptive, mut fixed) = (start().with_tolerance(Tolerance::new(1e-5)), fixed.expect("it starts"));
     adaptive.advance_to(0.6).expect("it bounces");
     fixed.step_to(0.6, 40).expect("it bounces");
-    // A step that ends within the rounding below the floor ends at the floor.
-    let mut at_floor = start();
-    at_floor.advance_to((fall + 1e-6) as f32).expect("it bounces");
-    at_floor.advance_to(0.6).expect("it bounces");
-    for q in [adaptive.q()[0], fixed.q()[0], at_floor.q()[0]] {
+    // A step that ends within the rounding of places below or above the floor: the impact is at the floor.
+    let [below, above] = [1e-6, -1e-6].map(|aside| {
+        let mut run = start();
+        run.advance_to((fall + aside) as f32).expect("it bounces");
+        run.advance_to(0.6).expect("it bounces");
+        run
+    });
+    for q in [adaptive.q()[0], fixed.q()[0], below.q()[0], above.q()[0]] {
         let off = f64::from(q) - height(0.9, 0.6);
         assert!(off.abs() < 2e-6, "{off:e}");
     }

@@ -172,7 +172,7 @@ where
             *rest = match self.known {
                 // A friction on an open contact has no direction.
                 Some(_) if is_off(row, modes) => row.rate.abs() <= none,
-                Some(_) if row.restitution.is_some() => sticks(mode) || touches() && row.rate <= none,
+                Some(_) if row.restitution.is_some() => sticks(mode) || touches() && row.rate.abs() <= none,
                 None if row.restitution.is_some() => touches() && row.rate.abs() <= none,
                 Some(_) => sticks(mode) || mode.direction * row.rate <= none,
                 None => row.rate.abs() <= none,

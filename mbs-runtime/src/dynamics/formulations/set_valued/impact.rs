@@ -23,7 +23,7 @@ use crate::mechanism::Entry;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::set_valued::{SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
-use crate::tolerances::set_valued;
+use crate::tolerances::{motion, set_valued};
 
 /// Impacts one after the other at one time, a contact; with more they count as infinitely many, and the last one is plastic.
 const MOST_IMPACTS: usize = 64;
@@ -127,7 +127,7 @@ where
         rows.iter().zip(modes).any(|(row, mode)| {
             row.restitution.is_some()
                 && !sticks(mode)
-                && touches(row, &self.y.q, self.model.metric)
+                && is_at_zero(row, &self.y.q, self.model.metric)
                 && approaches(row, &self.y.qd, self.model.metric)
         })
     }
@@ -140,6 +140,16 @@ fn touches<R: Real, const N: usize, const M: usize>(
     metric: &Metric<R, N, M>,
 ) -> bool {
     row.place <= no_gap(row, q, metric)
+}
+
+/// `true` if the gap of a contact is none as a step ends that was located there, or below zero. In single precision a gap that counts as
+/// none takes a time that shows: an impact there would be early.
+fn is_at_zero<R: Real, const N: usize, const M: usize>(
+    row: &SetValuedRow<R, N>,
+    q: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> bool {
+    row.place <= motion::LOCATED.of::<R>() * of_gap(row, q, metric)
 }
 
 /// `true` if the gap of a contact closes faster than by rounding.
@@ -183,7 +193,8 @@ where
                 model.require_apart(self.t, q, (index, row))?;
             }
             let touched = closed || touches(row, q, model.metric);
-            strikes |= touched && !closed && approaches(row, &self.y.qd, model.metric);
+            strikes |=
+                !closed && is_at_zero(row, q, model.metric) && approaches(row, &self.y.qd, model.metric);
             touching.iter_mut().skip(index).take(1).for_each(|touching| *touching = touched);
         }
         if !strikes {

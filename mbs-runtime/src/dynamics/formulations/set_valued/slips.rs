@@ -14,7 +14,8 @@ use crate::mechanism::set_valued::{SetValuedMode, SetValuedRow, WithSetValuedRow
 use crate::scalar::number::Real;
 
 /// Functions of a friction: the force to both sides where it sticks, the speed where it slides. A contact has the force where it is
-/// closed, and where it is open the gap and a rounding. Behind all of them stands the gap of each open contact alone.
+/// closed, and where it is open the gap and a rounding. Behind all of them stand the gap of each open contact alone, and its
+/// rate, below zero where it approaches.
 const SIDES: usize = 2;
 
 /// Shortest part of a step, up to its end, that a zero of a gap is looked for in; each next one is twice as long.
@@ -93,7 +94,8 @@ fn first_touch<R: Real>(
             if is_open || found.is_some_and(|(member, _)| member == SIDES * index) {
                 let touched = touch(|t| value(t, SIDES * count + index), start, (last, beyond));
                 // One that begins at zero may lift off so slowly that the errors of a step take it there and back: steps go on.
-                if is_open || R::constant(0.5) * (last - start) <= touched - start {
+                let approaches = value(start, (SIDES + 1) * count + index) < R::constant(0.0);
+                if is_open || approaches || R::constant(0.5) * (last - start) <= touched - start {
                     first = Some(first.map_or(touched, |first| first.min(touched)));
                 }
             }
@@ -139,12 +141,16 @@ where
         let (one, modes) = (R::constant(1.0), S::set_valued_modes(self.held));
         for (place, value) in self.values.iter_mut().enumerate() {
             let member = self.first + place;
-            if let Some(index) = member.checked_sub(SIDES * K) {
+            if let Some(behind) = member.checked_sub(SIDES * K) {
                 let open = |(row, mode): &(&SetValuedRow<R, N>, &SetValuedMode<R>)| {
                     row.restitution.is_some() && !sticks(mode)
                 };
+                let (index, is_rate) = (behind.checked_sub(K).unwrap_or(behind), K <= behind);
                 let contact = rows.get(index).zip(modes.get(index)).filter(open);
-                *value = contact.map_or(one, |(row, _)| row.place);
+                *value = contact.map_or(one, |(row, _)| match is_rate {
+                    true => row.rate + no_rate(row, &self.y.qd, self.model.metric),
+                    false => row.place,
+                });
                 continue;
             }
             let (index, side) = (member / SIDES, member % SIDES);
