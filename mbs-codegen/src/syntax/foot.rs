@@ -24,7 +24,7 @@ const PAIR: &str = "write `foot w of pad at v on cam within 8mm near 90deg, 270d
 /// Names that a foot declares, behind its own and `_`.
 const NAMES: [&str; 7] = ["gap", "place", "along", "from", "normal", "tangent", "slip"];
 
-/// What a foot is the foot of.
+/// Follower of a foot: it touches the curve there.
 enum Follower {
     Point(Vec<Token>),
     /// Centre, radius, and the angle by which its body is turned.
@@ -101,7 +101,7 @@ fn foot(parser: &mut Parser<'_>) -> Read<Foot> {
     Ok(Foot { follower, curve, reach, near })
 }
 
-/// What stands behind `of`, and the form of the whole statement.
+/// Follower behind `of`, and the form of the whole statement.
 fn follower(parser: &mut Parser<'_>) -> Read<(Follower, &'static str)> {
     if let (TokenKind::Identifier(form), TokenKind::Open('(')) = (parser.peek(), parser.peek_at(1)) {
         if parser.at_word("circle") {

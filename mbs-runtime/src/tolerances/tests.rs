@@ -68,6 +68,7 @@ const VALUES: &[(&str, Law, f64, f32)] = &[
     ("part of a search", motion::LEAST_PART, 4.0 * DOUBLE, 4.0 * SINGLE),
     ("contact", motion::OF_REACH, 16.0 * DOUBLE, 16.0 * SINGLE),
     ("no value", motion::NO_VALUE, 64.0 * DOUBLE, 64.0 * SINGLE),
+    ("located", motion::LOCATED, 16.0 * DOUBLE, 16.0 * SINGLE),
     ("blurred", motion::BLURRED, 2048.0 * DOUBLE, 2048.0 * SINGLE),
     ("solved anew", motion::SOLVED_ANEW, 1024.0 * DOUBLE, 1024.0 * SINGLE),
     ("enclosure", motion::OF_ENCLOSURE, 131_072.0 * DOUBLE, 131_072.0 * SINGLE),

@@ -51,6 +51,7 @@ where
     /// turns back there. Returns `true` if it did. The step that ends there is shortened, so that the state is one of the method.
     /// The event is searched on the cubic through the ends of each step. A value of 0 at the start has been passed already, and
     /// the next call goes on after the event. An impact may take a function of velocities over zero: that does not count.
+    /// A function that is zero there but for rounding of the places, and turns back, counts.
     ///
     /// # Errors
     /// As [`step`](Self::step); [`FailureKind::NonFinite`] where `event` is NaN or infinite; [`FailureKind::InvalidMethodParameter`] where the event bound asks for too many parts. The state is then that before the step that failed.

@@ -71,7 +71,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         Err(FailureKind::Penetration { contact, gap }.at(t.to_f64()))
     }
 
-    /// `true` if a contact closes at `t` (s): its gap is rounding, and it approaches.
+    /// `true` if an impact is at `t` (s): the gap of an open contact is at zero as located, and it approaches.
     pub(crate) fn strikes(&self, t: R, y: &IntegratorState<R, N, S::States>) -> bool {
         if const { !S::HAS_RIGID_CONTACTS } {
             return false;
