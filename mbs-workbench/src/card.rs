@@ -96,11 +96,21 @@ impl Card {
 
     /// Name on the command line; that of a scene is `text:Scene`.
     pub fn name(&self) -> String {
-        let name = name(self.constructor, self.module);
+        let name = self.text_name();
         match self.equations().scene() {
             "AllEffects" => name,
             scene => format!("{name}:{scene}"),
         }
+    }
+
+    /// `self.name() == name`, without an instance where the texts are others: functions of the caller may take long to make.
+    pub(crate) fn is_called(&self, name: &str) -> bool {
+        name.split(':').next() == Some(&self.text_name()) && self.name() == name
+    }
+
+    /// The name without the scene.
+    pub(crate) fn text_name(&self) -> String {
+        name(self.constructor, self.module)
     }
 
     /// The name as part of a path: no colon, which some systems refuse.

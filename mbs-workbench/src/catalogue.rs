@@ -48,7 +48,11 @@ impl<'a> Catalogue<'a> {
 
     /// The first name that two mechanisms have.
     pub fn repeated(self) -> Option<String> {
-        let mut names: Vec<String> = self.names().collect();
+        // Scenes of a text are told apart by instances, which functions of the caller make dear.
+        let texts: Vec<String> = self.cards.iter().map(Card::text_name).collect();
+        let is_shared = |text: &String| texts.iter().filter(|other| *other == text).count() > 1;
+        let shared = self.cards.iter().zip(&texts).filter(|(_, text)| is_shared(text));
+        let mut names: Vec<String> = shared.map(|(card, _)| card.name()).collect();
         names.sort();
         names.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0].clone())
     }
@@ -62,7 +66,11 @@ impl<'a> Catalogue<'a> {
         if let (true, [card]) = (is_file(name) && is_started(), self.cards) {
             return Ok(card);
         }
-        self.cards.iter().find(|card| card.name() == name).ok_or_else(|| self.unknown(name))
+        self.get(name).ok_or_else(|| self.unknown(name))
+    }
+
+    fn get(self, name: &str) -> Option<&'a Card> {
+        self.cards.iter().find(|card| card.is_called(name))
     }
 
     /// Reason why there is no mechanism of this name: it is a text of several scenes, or unknown.
@@ -97,7 +105,7 @@ impl<'a> Catalogue<'a> {
     }
 
     fn of_kind(self, name: &str, kind: &str) -> Option<&'a Card> {
-        self.find(&format!("{name}_{kind}")).ok()
+        self.get(&format!("{name}_{kind}"))
     }
 
     fn other_kinds(self, name: &str) -> Vec<&'static str> {
@@ -111,7 +119,7 @@ impl<'a> Catalogue<'a> {
         Mismatch::Alone {
             name: name.to_string(),
             variant_of: parts
-                .filter(|(linkage, _)| self.find(linkage).is_ok())
+                .filter(|(linkage, _)| self.get(linkage).is_some())
                 .map(|(linkage, kind)| (linkage.to_string(), kind)),
             several: several.collect(),
         }

@@ -129,12 +129,11 @@ fn list(catalogue: &Catalogue, out: &mut Output) -> Result<(), CommandError> {
 
 /// The card of this name, or of this text, that brings a study.
 fn found<'a>(catalogue: &Catalogue<'a>, name: &str) -> Result<(&'a Card, &'static Study), CommandError> {
-    let of_text = |card: &&Card| card.name().split(':').next() == Some(name) || card.name() == name;
+    let of_text = |card: &&Card| card.text_name() == name || card.is_called(name);
     let own = catalogue.cards.iter().filter(of_text).find_map(|card| Some((card, card.study?)));
     own.ok_or_else(|| {
-        let text = |card: &Card| card.name().split(':').next().unwrap_or_default().to_string();
-        let known: Vec<String> =
-            catalogue.cards.iter().filter(|card| card.study.is_some()).map(text).collect();
+        let with_study = catalogue.cards.iter().filter(|card| card.study.is_some());
+        let known: Vec<String> = with_study.map(Card::text_name).collect();
         if known.is_empty() {
             let help = "a card brings one by `card!(…).studied_by(&STUDY)`";
             return CommandError::Usage(format!("no mechanism brings a study\nhelp: {help}"));

@@ -1,5 +1,7 @@
 //! The list of ready mechanisms: names, presets, pictures.
 
+use mbs_workbench::card::Card;
+use mbs_workbench::catalogue::Catalogue;
 use mbs_workbench::mismatch::{Mismatch, set};
 
 use mechanisms::CATALOGUE;
@@ -11,6 +13,17 @@ fn names_are_unique_and_found() {
         let found = CATALOGUE.find(&card.name()).expect("in the list");
         assert_eq!(found.constructor, card.constructor);
     }
+}
+
+#[test]
+fn a_name_is_found_without_instances_of_other_texts() {
+    let card = *CATALOGUE.find("four_bar_mass:Driven").expect("in the list");
+    let dear = Card { make: || panic!("an instance was made"), constructor: "dear()", ..card };
+    let cards = [dear, card];
+    let catalogue = Catalogue { cards: &cards };
+    assert_eq!(catalogue.repeated(), None);
+    assert!(catalogue.find("four_bar_mass:Driven").is_ok());
+    assert_eq!(Catalogue { cards: &[dear, card, card] }.repeated().as_deref(), Some("four_bar_mass:Driven"));
 }
 
 #[test]
