@@ -335,10 +335,14 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     }
 
     /// Largest |Φᵢ| over its row's scale: how far the loops are open, in reference lengths (rad for angle rows).
+    ///
+    /// Rows that yield do not count: [`mismatches`](Self::mismatches) has their contradictions.
     pub fn closure_error(&self) -> R {
+        let zero = R::constant(0.0);
         let scales = self.mechanism.row_scales(&self.parameters);
-        let errors = self.phi().into_iter().zip(scales).map(|(residual, scale)| (residual / scale).abs());
-        errors.fold(R::constant(0.0), |largest, error| largest.max(error))
+        let rows = self.phi().into_iter().zip(scales).zip(self.mechanism.widths(&self.parameters));
+        let held = rows.filter(|(_, width)| !(zero < *width));
+        held.fold(zero, |largest, ((residual, scale), _)| largest.max((residual / scale).abs()))
     }
 
     /// Stage-1 values of the state.

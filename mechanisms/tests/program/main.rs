@@ -97,8 +97,8 @@ fn every_mechanism_runs_and_writes_its_report() {
         let scratch = Scratch::new(name);
         // Matrices of 163 rows, implicit steps of a millisecond and impacts take a moment each where nothing is optimised.
         let until = match name {
-            "n_four_bar_40" | "governor" | "woodpecker" => &["--until", "0.1"][..],
-            "valve_spring" => &["--until", "0.01"],
+            "n_four_bar_10" | "n_four_bar_40" | "woodpecker" => &["--until", "0.1"][..],
+            "governor" | "valve_spring" => &["--until", "0.01"],
             "bouncing_balls" | "bricard" | "door_with_closer" => &["--until", "1"],
             _ => &[],
         };
