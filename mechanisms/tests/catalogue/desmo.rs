@@ -64,6 +64,22 @@ fn what_both_cams_contradict_each_other_by_is_the_mismatch_of_the_row_that_yield
 }
 
 #[test]
+fn tables_of_a_quick_law_contradict_each_other_within_the_width() {
+    // Jerk begins with a jump of its slope at the ends of a flank. There accelerations of tables differ most.
+    let flank = 75_f64.to_radians();
+    let law = Lift::flanks(Flank::Polynomial4567, 0.008, [flank, 0.0, flank]).expect("a law");
+    let design = Design::ready(law, Direction::CounterClockwise);
+    for points in [720, 90] {
+        let tables =
+            design.curves().expect("a pair of cams").map(|curve| curve.table(points).expect("a table"));
+        let largest =
+            Misfit::of(&design, &tables, 1440, 0.3).expect("a contradiction below the width").largest();
+        println!("desmo, 4-5-6-7 in 75 deg, {points} points: mismatch {largest:.1e?}");
+        assert!(largest[0] > 0.0 && largest[0] < 1e-6, "{largest:?}");
+    }
+}
+
+#[test]
 fn the_first_impacts_are_those_of_an_independent_program() {
     /// Lifts (m) at 45, 54 and 72 of 72 parts of 200° from the start, from `tests/motions/data/desmo.csv`, case `9000 play`.
     const LIFTS: [(usize, f64); 3] =
