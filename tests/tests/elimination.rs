@@ -45,6 +45,49 @@ mechanism! {
     }
 }
 
+mechanism! {
+    /// Four bars by the places of their joints, whose coupler a crank pushes: the first pivot vanishes where two bars are in line.
+    mechanism Coupled;
+    coord theta: rad = 0;
+    coord a: [m; 2] = [0.5m, 1.1m];
+    coord b: [m; 2] = [1.3m, 1.2m];
+    let tip = 0.1m*unit(theta);
+    let pushed = a + 0.4*(b - a);
+    drive crank: theta == t*1rad/1s;
+    constraint bars {
+        dot(a - [0.5m, 0.4m], a - [0.5m, 0.4m]) == (0.7m)^2;
+        dot(b - [1.3m, 0.3m], b - [1.3m, 0.3m]) == (0.9m)^2;
+        dot(a - b, a - b) == (0.8m)^2;
+        dot(pushed - tip, pushed - tip) == (1.3m)^2;
+    }
+}
+
+mechanism! {
+    /// The same without a drive.
+    mechanism CoupledRing;
+    param m: kg = 1;
+    coord theta: rad = 0;
+    coord a: [m; 2] = [0.5m, 1.1m];
+    coord b: [m; 2] = [1.3m, 1.2m];
+    let tip = 0.1m*unit(theta);
+    let pushed = a + 0.4*(b - a);
+    body plate { mass: m, inertia: 0.01 [kg*m^2], com: a, angle: theta }
+    constraint bars {
+        dot(a - [0.5m, 0.4m], a - [0.5m, 0.4m]) == (0.7m)^2;
+        dot(b - [1.3m, 0.3m], b - [1.3m, 0.3m]) == (0.9m)^2;
+        dot(a - b, a - b) == (0.8m)^2;
+        dot(pushed - tip, pushed - tip) == (1.3m)^2;
+    }
+    independent theta;
+}
+
+/// The position with the bars of the first joint in line but for `beside` (m).
+fn in_line(mut q: [f64; 5], beside: f64) -> [f64; 5] {
+    let (x, y) = (q[1] - 0.5, q[2] - 0.4);
+    (q[3], q[4]) = (q[1] + 0.7 * x - beside * y, q[2] + 0.7 * y + beside * x);
+    q
+}
+
 /// SplitMix64. Source: Steele, Lea & Flood 2014.
 struct Sequence(u64);
 
@@ -123,27 +166,54 @@ fn solutions_are_those_of_dense_factors_wherever_the_mechanism_is_regular() {
     assert!(at_random(&Stephenson::default(), 4000) > 3800);
     assert!(at_random(&ThreeRrr::default(), 4000) > 3800);
     assert!(at_random(&Wreath::default(), 4000) > 3500);
+    assert!(at_random(&Coupled::default(), 4000) > 3500);
 }
 
 #[test]
 fn a_pivot_that_vanishes_costs_no_digit() {
-    // The first pivot of Stephenson's linkage is sin(beta − alpha) times two lengths.
-    let text = include_str!("../../mechanisms/src/stephenson.rs");
-    let start = text.find("mechanism! {").expect("a text") + "mechanism! {".len();
-    let source = &text[start..text[start..].find("\n}\n").expect("an end") + start];
-    let report = mbs_codegen::structure_of(source, None).expect("a structure");
-    assert!(
-        report.blocks.iter().any(|block| block.elimination.starts_with("elimination of alpha with beta"))
-    );
+    assert!(eliminates::<Coupled>("elimination of a.0 with a.1"));
     let mut sequence = Sequence(7);
     let mut regular = 0;
     for run in 0..600 {
-        let mut q: [f64; 5] = core::array::from_fn(|_| sequence.number());
-        q[2] = q[1] + [0.0, 1e-15, 1e-9, 1e-6, 1e-3, core::f64::consts::PI][run % 6];
-        regular +=
-            u32::from(compare(&Stephenson::default(), &q, &[0.3, -0.2, 0.7, 0.1, 0.4]) >= LEAST_MARGIN);
+        let q: [f64; 5] = core::array::from_fn(|_| sequence.number());
+        let q = in_line(q, [0.0, 1e-15, 1e-9, 1e-6, 1e-3][run % 5]);
+        regular += u32::from(compare(&Coupled::default(), &q, &[0.3, -0.2, 0.7, 0.1, 0.4]) >= LEAST_MARGIN);
     }
     assert!(regular > 500, "{regular}");
+}
+
+/// `true` if a block of the mechanism is eliminated so.
+fn eliminates<S: Mechanism<f64, 5, 5>>(order: &str) -> bool {
+    let report = mbs_codegen::structure_of(S::SOURCE, None).expect("a structure");
+    report.blocks.iter().any(|block| block.elimination.starts_with(order))
+}
+
+/// Components along links have no pivot that vanishes, and their margin has no unit.
+#[test]
+fn components_along_links_are_measured_alike_in_every_unit() {
+    assert!(eliminates::<Stephenson>("elimination of gamma, then delta, then alpha with beta"));
+    let mut sequence = Sequence(19);
+    for _ in 0..200 {
+        let q: [f64; 5] = core::array::from_fn(|_| sequence.number());
+        let in_unit = |unit: f64| {
+            let mut scaled: Stephenson = Stephenson::default();
+            let Stephenson { d, La: a, Lb: b, Ld: c, m, n, fx, fy, r, l, .. } = &mut scaled;
+            [d, a, b, c, m, n, fx, fy, r, l].into_iter().for_each(|length| *length *= unit);
+            let parameters = scaled.parameters();
+            let position = scaled.position(&parameters, &q, 0.2);
+            let (factors, margin) = scaled.factorize(&parameters, &position);
+            let lengths = [0.7, 0.3, -0.2, 0.5].map(|x| unit * x);
+            let b = [lengths[0], lengths[1], lengths[2], lengths[3], 0.3];
+            (margin.value, scaled.solve_linear(&factors, &b))
+        };
+        let (margin, x) = in_unit(1.0);
+        for unit in [1e-30, 1e-9, 1e9, 1e30] {
+            let (other, y) = in_unit(unit);
+            assert!((other - margin).abs() <= ERROR * margin, "{unit}: {other} for {margin}");
+            let error = norm(x.iter().zip(y).map(|(x, y)| x - y)) / norm(x);
+            assert!(error * margin < ERROR, "{unit}: {error}");
+        }
+    }
 }
 
 #[test]
@@ -171,14 +241,15 @@ fn the_sign_of_the_determinant_is_that_of_the_dense_one() {
 
 #[test]
 fn a_lane_whose_pivot_vanishes_takes_the_others_along_and_all_are_right() {
-    let lanes: Stephenson<Lanes<f64, 4>> = Stephenson::default();
-    let alone: Stephenson = Stephenson::default();
+    let lanes: Coupled<Lanes<f64, 4>> = Coupled::default();
+    let alone: Coupled = Coupled::default();
     let mut sequence = Sequence(13);
     for vanishing in 0..5 {
         let q: [[f64; 4]; 5] = core::array::from_fn(|_| core::array::from_fn(|_| sequence.number()));
         let mut q = q;
         if vanishing < 4 {
-            q[2][vanishing] = q[1][vanishing];
+            let vanished = in_line(q.map(|values| values[vanishing]), 0.0);
+            q.iter_mut().zip(vanished).for_each(|(values, value)| values[vanishing] = value);
         }
         let parameters = lanes.parameters();
         let position = lanes.position(&parameters, &q.map(Lanes), Lanes([0.2; 4]));
@@ -202,14 +273,22 @@ fn a_lane_whose_pivot_vanishes_takes_the_others_along_and_all_are_right() {
 
 #[test]
 fn transposed_systems_balance_forces() {
-    let ring: Ring = Ring::default();
+    balances(&Ring::default(), |q| q);
+    balances(&CoupledRing::default(), |q| in_line(q, 0.0));
+}
+
+/// Forces that balance at random positions, of which each fourth one is changed by `vanishing`.
+fn balances<S>(ring: &S, vanishing: impl Fn([f64; 5]) -> [f64; 5])
+where
+    S: Partitioned<f64, 5, 4>,
+{
     let parameters = ring.parameters();
     let mut sequence = Sequence(17);
     let mut regular = 0;
     for run in 0..400 {
         let mut q: [f64; 5] = core::array::from_fn(|_| sequence.number());
         if run % 4 == 0 {
-            q[2] = q[1]; // the pivot vanishes
+            q = vanishing(q);
         }
         let y: [f64; 5] = core::array::from_fn(|_| sequence.number());
         let position = ring.position(&parameters, &q, 0.0);

@@ -224,10 +224,11 @@ fn order(equations: &Equations, rows: &[usize], coordinates: &[usize]) -> Option
     let entry = |row: &crate::equations::Row, coordinate: usize| {
         row.phi_q.iter().find(|(column, _)| *column == coordinate).map(|(_, entry)| *entry)
     };
+    let scales: Vec<NodeId> = rows.iter().filter_map(|row| equations.row_scales.get(*row)).copied().collect();
     let rows = rows.iter().filter_map(|row| equations.rows.get(*row));
     let phi_q: Vec<Vec<Option<NodeId>>> =
         rows.map(|row| coordinates.iter().map(|coordinate| entry(row, *coordinate)).collect()).collect();
-    pivots::order(&equations.graph, &phi_q)
+    pivots::order(&equations.graph, &phi_q, &scales)
 }
 
 /// The rows that contain each coordinate.

@@ -1,7 +1,8 @@
 //! The order in which a block of four and more unknowns is eliminated: decided here, guarded at run time.
 //!
 //! Closures are vectors. So a single entry of a loop, −L sin φ, vanishes within each turn, whereas the two rows for two
-//! angles do not. Pivots are therefore constant entries (numbers) or 2 × 2, and the remaining block is up to 3 × 3.
+//! angles do not. Pivots are therefore constant entries (numbers), 2 × 2, or the two rows of a column that has no others. Of these rows
+//! the component along the column gives its unknown; the component across is free of it and stays. The remaining block is up to 3 × 3.
 
 use crate::symbolic::sample_points::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId, evaluate::evaluate};
@@ -33,6 +34,12 @@ const RECIPROCAL: usize = 8;
 /// Price of the determinant and the inverse of a 2 × 2 pivot without its reciprocal.
 const INVERSE: usize = 8;
 
+/// Price of a column's length and of the weight of a component without the reciprocal.
+const LENGTH: usize = 7;
+
+/// Price of the bound on a multiplier.
+const BOUND: usize = 5;
+
 /// Pivots in the order of the elimination; each has as many rows as columns, the last one is the rest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Order {
@@ -47,24 +54,55 @@ pub struct Pivot {
     pub rows: Vec<usize>,
     /// Its columns.
     pub columns: Vec<usize>,
+    /// The second row of a single column: the pivot is the component of both rows along it, that across it takes this row's place.
+    pub across: Option<usize>,
 }
 
-/// Before: the Jacobian of a block, row by row. After: the order with the fewest products at each step, of pivots that
-/// most states accept. `None` where there is no such order, or the block is too small or too large.
-pub fn order(graph: &Graph, phi_q: &[Vec<Option<NodeId>>]) -> Option<Order> {
+impl Pivot {
+    /// The rows that it is made of, that of the component across at the end.
+    pub fn sources(&self) -> impl Iterator<Item = usize> {
+        self.rows.iter().copied().chain(self.across)
+    }
+
+    /// Both rows and the column of a component.
+    pub fn component(&self) -> Option<([usize; 2], usize)> {
+        match (self.rows.as_slice(), self.columns.as_slice(), self.across) {
+            (&[first], &[column], Some(second)) => Some(([first, second], column)),
+            _ => None,
+        }
+    }
+}
+
+/// Before: the Jacobian of a block, row by row, and the scales of its rows. After: the order with the fewest products at each step, of
+/// pivots that most states accept. `None` where there is no such order, or the block is too small or too large.
+pub fn order(graph: &Graph, phi_q: &[Vec<Option<NodeId>>], scales: &[NodeId]) -> Option<Order> {
     let size = phi_q.len();
     if !(SMALLEST..=LARGEST).contains(&size) {
         return None;
     }
-    let mut rest = Rest::of(graph, phi_q)?;
+    let mut rest = Rest::of(graph, phi_q, scales)?;
     let mut pivots = Vec::new();
-    while rest.rows.len() > 3 {
-        let best = rest.candidates().into_iter().filter(|pivot| rest.accepts(pivot));
-        let best = best.min_by_key(|pivot| (rest.price(pivot), pivot.rows.clone(), pivot.columns.clone()))?;
+    while rest.rows.len() > 2 {
+        let cheapest = |candidates: Vec<Pivot>, price: &dyn Fn(&Pivot) -> usize| {
+            let accepted = candidates.into_iter().filter(|pivot| rest.accepts(pivot));
+            accepted.min_by_key(|pivot| (price(pivot), pivot.rows.clone(), pivot.columns.clone()))
+        };
+        let components = cheapest(rest.components(), &|pivot| rest.work(pivot));
+        let best = match rest.rows.len() {
+            // The closed form of three is the cheaper one unless lengths are at hand already.
+            3 if pivots.iter().all(|pivot: &Pivot| pivot.across.is_none()) => None,
+            3 => components,
+            _ => {
+                let usual = cheapest(rest.candidates(), &|pivot| rest.price(pivot));
+                let both = usual.into_iter().chain(components);
+                Some(both.min_by_key(|pivot| rest.work(pivot))?)
+            }
+        };
+        let Some(best) = best else { break };
         rest.eliminate(&best);
         pivots.push(best);
     }
-    pivots.push(Pivot { rows: rest.rows, columns: rest.columns });
+    pivots.push(Pivot { rows: rest.rows, columns: rest.columns, across: None });
     Some(Order { pivots })
 }
 
@@ -76,12 +114,14 @@ struct Rest {
     present: Vec<Vec<bool>>,
     /// Entries that are numbers of the text.
     fixed: Vec<Vec<bool>>,
+    /// Scale of each row as it is in the text; none of a component of two rows.
+    scales: Vec<Option<NodeId>>,
     /// The block in each sample.
     samples: Vec<Vec<Vec<f64>>>,
 }
 
 impl Rest {
-    fn of(graph: &Graph, phi_q: &[Vec<Option<NodeId>>]) -> Option<Self> {
+    fn of(graph: &Graph, phi_q: &[Vec<Option<NodeId>>], scales: &[NodeId]) -> Option<Self> {
         let size = phi_q.len();
         let nodes: Vec<NodeId> = phi_q.iter().flatten().copied().flatten().collect();
         let mut samples = Vec::new();
@@ -99,6 +139,7 @@ impl Rest {
             columns: (0..size).collect(),
             present: each(&|_| true),
             fixed: each(&|id| graph.constant_value(id).is_some_and(|value| value != 0.0)),
+            scales: (0..size).map(|row| scales.get(row).copied()).collect(),
             samples,
         })
     }
@@ -123,7 +164,11 @@ impl Rest {
         for (index, &first) in self.rows.iter().enumerate() {
             let own = self.columns_of(first);
             let fixed = own.iter().filter(|column| self.is_fixed(first, **column));
-            candidates.extend(fixed.map(|column| Pivot { rows: vec![first], columns: vec![*column] }));
+            candidates.extend(fixed.map(|column| Pivot {
+                rows: vec![first],
+                columns: vec![*column],
+                across: None,
+            }));
             for &second in self.rows.iter().skip(index + 1).take(near) {
                 let other = self.columns_of(second);
                 for &a in &own {
@@ -132,7 +177,8 @@ impl Rest {
                         let (low, high) = (a.min(b), a.max(b));
                         let twice = a > b && self.is_present(first, b) && self.is_present(second, a);
                         if !twice {
-                            candidates.push(Pivot { rows: vec![first, second], columns: vec![low, high] });
+                            let (rows, columns) = (vec![first, second], vec![low, high]);
+                            candidates.push(Pivot { rows, columns, across: None });
                         }
                     }
                 }
@@ -141,12 +187,27 @@ impl Rest {
         candidates
     }
 
+    /// Columns with entries in two rows alone, both of one scale, neither of which is a component already: so lengths are not
+    /// multiplied again.
+    fn components(&self) -> Vec<Pivot> {
+        let component = |column: usize| {
+            let rows: Vec<usize> =
+                self.rows.iter().copied().filter(|row| self.is_present(*row, column)).collect();
+            let &[first, second] = rows.as_slice() else { return None };
+            let [scale, other] = [first, second].map(|row| self.scales.get(row).copied().flatten());
+            let fits = scale.is_some() && scale == other;
+            let varies = !self.is_fixed(first, column) && !self.is_fixed(second, column);
+            (fits && varies).then(|| Pivot { rows: vec![first], columns: vec![column], across: Some(second) })
+        };
+        self.columns.iter().copied().filter_map(component).collect()
+    }
+
     /// Rows outside a pivot that have an entry in its columns, and columns outside it with one in its rows.
     fn beside(&self, pivot: &Pivot) -> (Vec<usize>, Vec<usize>) {
-        let rows = self.rows.iter().copied().filter(|row| !pivot.rows.contains(row));
+        let rows = self.rows.iter().copied().filter(|row| pivot.sources().all(|source| source != *row));
         let rows = rows.filter(|row| pivot.columns.iter().any(|column| self.is_present(*row, *column)));
         let columns = self.columns.iter().copied().filter(|column| !pivot.columns.contains(column));
-        let columns = columns.filter(|column| pivot.rows.iter().any(|row| self.is_present(*row, *column)));
+        let columns = columns.filter(|column| pivot.sources().any(|row| self.is_present(row, *column)));
         (rows.collect(), columns.collect())
     }
 
@@ -163,8 +224,27 @@ impl Rest {
         2 * (inverse + multipliers + rows.len() * size * columns.len()) / size
     }
 
-    /// `true` if enough samples keep their multipliers small.
+    /// Instructions of a step, an unknown: two eliminations, three solutions, bounds. It decides between components and other pivots.
+    fn work(&self, pivot: &Pivot) -> usize {
+        let (rows, columns) = self.beside(pivot);
+        let (rows, columns, size) = (rows.len(), columns.len(), pivot.rows.len());
+        let (elimination, solution) = match (size, pivot.across) {
+            (1, Some(_)) => (LENGTH + RECIPROCAL + 3 * columns, 4 * columns + 7),
+            (1, None) => (rows + 2 * rows * columns, 2 * rows + 2 * columns + 1),
+            _ => {
+                let multipliers = rows * size * (2 * size - 1 + BOUND);
+                let elimination = INVERSE + LENGTH + RECIPROCAL + multipliers + 2 * rows * size * columns;
+                (elimination, size * (2 * rows + 2 * columns + 2 * size - 1))
+            }
+        };
+        2 * (2 * elimination + 3 * solution) / size
+    }
+
+    /// `true` if enough samples keep their multipliers small; a component has none.
     fn accepts(&self, pivot: &Pivot) -> bool {
+        if let Some((rows, column)) = pivot.component() {
+            return self.samples.iter().all(|a| rows.iter().any(|row| at(a, *row, column) != 0.0));
+        }
         let (rows, _) = self.beside(pivot);
         let unborne = self.samples.iter().filter(|a| {
             let inverse = inverse(a, pivot);
@@ -179,13 +259,23 @@ impl Rest {
     /// The rest without the pivot's rows and columns.
     fn eliminate(&mut self, pivot: &Pivot) {
         let (rows, columns) = self.beside(pivot);
-        for row in &rows {
+        if let Some(scale) = pivot.across.and_then(|second| self.scales.get_mut(second)) {
+            *scale = None;
+        }
+        for row in rows.iter().copied().chain(pivot.across) {
             for column in &columns {
-                set(&mut self.present, *row, *column, true);
-                set(&mut self.fixed, *row, *column, false);
+                set(&mut self.present, row, *column, true);
+                set(&mut self.fixed, row, *column, false);
             }
         }
         for a in &mut self.samples {
+            if let Some(([first, second], column)) = pivot.component() {
+                let (x, y) = (at(a, first, column), at(a, second, column));
+                for other in &columns {
+                    let across = x * at(a, second, *other) - y * at(a, first, *other);
+                    set(a, second, *other, across / x.hypot(y));
+                }
+            }
             let inverse = inverse(a, pivot);
             for row in &rows {
                 let multipliers = signed_multipliers(a, *row, pivot, &inverse);
@@ -271,7 +361,8 @@ mod tests {
             }
             entries.push(line);
         }
-        order(&graph, &entries)
+        let scale = graph.constant(2.0);
+        order(&graph, &entries, &vec![scale; entries.len()])
     }
 
     fn pivots(order: &Order) -> Vec<(&[usize], &[usize])> {
@@ -296,6 +387,27 @@ mod tests {
         // The second loop has one angle of its own alone: the first is eliminated.
         let order = order.expect("an order");
         assert_eq!(pivots(&order).first(), Some(&([0, 1].as_slice(), [1, 2].as_slice())), "{order:?}");
+    }
+
+    #[test]
+    fn columns_with_two_rows_are_taken_by_components() {
+        let order = of(&["xxx.", "xxx.", "xx.x", "xx.x"]).expect("an order");
+        let taken: Vec<_> = order.pivots.iter().map(Pivot::component).collect();
+        assert_eq!(taken, [Some(([0, 1], 2)), Some(([2, 3], 3)), None], "{order:?}");
+        assert_eq!(pivots(&order).last(), Some(&([1, 3].as_slice(), [0, 1].as_slice())), "{order:?}");
+    }
+
+    #[test]
+    fn components_are_of_rows_of_one_scale() {
+        let (mut graph, mut index) = (Graph::default(), 0);
+        let mut entry = |row: usize, column: usize| {
+            index += 1;
+            (column < 2 || column - 2 == row / 2).then(|| graph.leaf(Leaf::Position(index)))
+        };
+        let rows: Vec<Vec<_>> = (0..4).map(|row| (0..4).map(|column| entry(row, column)).collect()).collect();
+        let scales = [1.0, 2.0, 3.0, 4.0].map(|scale| graph.constant(scale));
+        let order = order(&graph, &rows, &scales).expect("an order");
+        assert!(order.pivots.iter().all(|pivot| pivot.across.is_none()), "{order:?}");
     }
 
     #[test]

@@ -11,13 +11,13 @@ pub struct Direct2<T> {
     reciprocal: T,
 }
 
-impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
-    /// The margin is 2 |det S|/‖S‖² = 2 σ₁σ₂/(σ₁² + σ₂²), S the block in the reference metric.
+impl<T: Scalar> Direct2<T> {
+    /// [`factorize`](Factorization::factorize) with the reciprocals of the rows' scales.
     #[inline(always)]
-    fn factorize(a: &[[T; 2]; 2], row_scales: &[T; 2], coordinate_scales: &[T; 2]) -> (Self, T) {
+    pub fn weighted(a: &[[T; 2]; 2], weights: &[T; 2], coordinate_scales: &[T; 2]) -> (Self, T) {
         let [[a11, a12], [a21, a22]] = *a;
         let scaled @ [[b11, b12], [b21, b22]] =
-            crate::linear_algebra::in_metric(a, row_scales, coordinate_scales);
+            crate::linear_algebra::weighted(a, weights, coordinate_scales);
         let (determinant, in_metric) = (a11 * a22 - a12 * a21, b11 * b22 - b12 * b21);
         let (r, margin) = crate::linear_algebra::reciprocal_and_margin(
             determinant,
@@ -25,6 +25,14 @@ impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
             crate::linear_algebra::mean_square(&scaled),
         );
         (Direct2 { inverse: [[a22 * r, -a12 * r], [-a21 * r, a11 * r]], reciprocal: r }, margin)
+    }
+}
+
+impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
+    /// The margin is 2 |det S|/‖S‖² = 2 σ₁σ₂/(σ₁² + σ₂²), S the block in the reference metric.
+    #[inline(always)]
+    fn factorize(a: &[[T; 2]; 2], row_scales: &[T; 2], coordinate_scales: &[T; 2]) -> (Self, T) {
+        Self::weighted(a, &row_scales.map(|scale| T::constant(1.0) / scale), coordinate_scales)
     }
 
     #[inline(always)]

@@ -11,17 +11,25 @@ pub struct Direct3<T> {
     reciprocal: T,
 }
 
-impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
-    /// The margin is |det S|/(‖S‖²/3)^(3/2), S the block in the reference metric.
+impl<T: Scalar> Direct3<T> {
+    /// [`factorize`](Factorization::factorize) with the reciprocals of the rows' scales.
     #[inline(always)]
-    fn factorize(a: &[[T; 3]; 3], row_scales: &[T; 3], coordinate_scales: &[T; 3]) -> (Self, T) {
+    pub fn weighted(a: &[[T; 3]; 3], weights: &[T; 3], coordinate_scales: &[T; 3]) -> (Self, T) {
         let (inverse, determinant) = cofactors(a);
-        let scaled @ [b1, b2, b3] = crate::linear_algebra::in_metric(a, row_scales, coordinate_scales);
+        let scaled @ [b1, b2, b3] = crate::linear_algebra::weighted(a, weights, coordinate_scales);
         let mean = crate::linear_algebra::mean_square(&scaled);
         let in_metric = dot(&b1, &cross(&b2, &b3));
         let (r, margin) =
             crate::linear_algebra::reciprocal_and_margin(determinant, in_metric, mean * mean.sqrt());
         (Direct3 { inverse: inverse.map(|row| row.map(|c| c * r)), reciprocal: r }, margin)
+    }
+}
+
+impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
+    /// The margin is |det S|/(‖S‖²/3)^(3/2), S the block in the reference metric.
+    #[inline(always)]
+    fn factorize(a: &[[T; 3]; 3], row_scales: &[T; 3], coordinate_scales: &[T; 3]) -> (Self, T) {
+        Self::weighted(a, &row_scales.map(|scale| T::constant(1.0) / scale), coordinate_scales)
     }
 
     /// Only the last product waits for the division.

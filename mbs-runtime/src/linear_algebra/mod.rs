@@ -78,11 +78,20 @@ fn in_metric<T: Scalar, const M: usize, const K: usize>(
     row_scales: &[T; M],
     coordinate_scales: &[T; K],
 ) -> [[T; K]; M] {
+    weighted(a, &row_scales.map(|scale| T::constant(1.0) / scale), coordinate_scales)
+}
+
+/// [`in_metric`] with the reciprocals of the rows' scales.
+#[inline(always)]
+fn weighted<T: Scalar, const M: usize, const K: usize>(
+    a: &[[T; K]; M],
+    weights: &[T; M],
+    coordinate_scales: &[T; K],
+) -> [[T; K]; M] {
     let mut scaled = *a;
-    for (row, row_scale) in scaled.iter_mut().zip(row_scales) {
-        let weight = T::constant(1.0) / *row_scale;
+    for (row, weight) in scaled.iter_mut().zip(weights) {
         for (entry, scale) in row.iter_mut().zip(coordinate_scales) {
-            *entry = *entry * *scale * weight;
+            *entry = *entry * *scale * *weight;
         }
     }
     scaled

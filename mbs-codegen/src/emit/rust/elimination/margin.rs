@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::printer::Printer;
+use super::scales::Component;
 use super::value::{Entry, Value};
 use crate::emit::rust::scope::number;
 use crate::structure::pivots::Pivot;
@@ -22,7 +23,7 @@ impl Printer {
     /// A size in the reference metric.
     pub(super) fn weighted(&mut self, size: String, row: usize, column: usize) -> String {
         self.operations.multiplications += 1;
-        let mut text = format!("{size} * __weight{}", self.scales.row(row));
+        let mut text = format!("{size} * {}", self.weight_of(row));
         if let Some(scale) = self.scales.columns.get(column).copied().flatten() {
             let _ = write!(text, " * __coordinate_scales[{scale}]");
             self.operations.multiplications += 1;
@@ -30,11 +31,10 @@ impl Printer {
         text
     }
 
-    /// The factor that brings the determinant of a pivot with these places into the reference metric; none for 1.
-    pub(super) fn unit(&mut self, places: [(usize, usize); 2]) -> Entry {
-        let weights = places.map(|(row, _)| format!("__weight{}", self.scales.row(row))).join(" * ");
-        let mut unit = weights;
-        self.operations.multiplications += 1;
+    /// The factor that brings an entry, or the determinant of a pivot with these places, into the reference metric.
+    pub(super) fn weights<const N: usize>(&mut self, places: [(usize, usize); N]) -> Entry {
+        let mut unit = places.map(|(row, _)| self.weight_of(row)).join(" * ");
+        self.operations.multiplications += N.saturating_sub(1);
         for (_, column) in places {
             if let Some(scale) = self.scales.columns.get(column).copied().flatten() {
                 let _ = write!(unit, " * __coordinate_scales[{scale}]");
@@ -49,7 +49,7 @@ impl Printer {
         let mut groups: BTreeMap<(usize, Option<usize>), (usize, usize, String)> = BTreeMap::new();
         for (row, column) in places {
             let Some(entry) = self.entry(row, column) else { continue };
-            let scale = (self.scales.row(row), self.scales.columns.get(column).copied().flatten());
+            let scale = (self.scales.group(row), self.scales.columns.get(column).copied().flatten());
             let size = self.absolute(&entry);
             match groups.get_mut(&scale) {
                 None => drop(groups.insert(scale, (row, column, size))),
@@ -72,6 +72,26 @@ impl Printer {
         if all.is_empty() { number(0.0) } else { all }
     }
 
+    /// Prints the largest entry of the block. Lengths of columns that components are taken along stand for their entries.
+    pub(super) fn largest_of_all(&mut self) {
+        let size = self.entries.len();
+        let components: Vec<Component> = self.scales.components.values().cloned().collect();
+        let measured =
+            |place: &(usize, usize)| components.iter().any(|component| component.places.contains(place));
+        let places = (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
+        let places: Vec<(usize, usize)> = places.filter(|place| !measured(place)).collect();
+        let (own, scales) = (self.own.clone(), self.scales.clone());
+        let rest = core::mem::replace(&mut self.entries, own);
+        self.scales.components.clear();
+        let mut largest = self.largest(places.into_iter());
+        (self.entries, self.scales) = (rest, scales);
+        for Component { length, .. } in components {
+            largest = format!("T::max({largest}, {length})");
+            self.operations.selects += 1;
+        }
+        let _ = writeln!(self.text, "let __largest = {largest};");
+    }
+
     /// The largest entry of a pivot's columns; empty for a single entry.
     pub(super) fn block(&mut self, pivot: &Pivot) -> String {
         if pivot.rows.len() < 2 || self.once {
@@ -81,6 +101,13 @@ impl Printer {
         let places = (0..size).flat_map(|row| pivot.columns.iter().map(move |column| (row, *column)));
         let text = self.largest(places);
         self.name(&text).text()
+    }
+
+    /// Prints the update by the length of a column's component in two rows, the second of which is `row` now.
+    pub(super) fn measure_component(&mut self, row: usize) {
+        let Some(component) = self.scales.components.get(&row).filter(|_| !self.once) else { return };
+        self.operations.selects += 1;
+        let _ = writeln!(self.text, "__least = T::min(__least, {});", component.length);
     }
 
     /// Prints the update by the size of a pivot, as the best choice of rows for its columns would leave it; for two rows the

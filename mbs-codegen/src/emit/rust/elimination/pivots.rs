@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::printer::Printer;
+use super::scales::Component;
 use super::value::{Entry, Value, negated};
 use crate::emit::rust::code::list;
 use crate::emit::rust::scope::number;
@@ -15,9 +16,11 @@ const TURN: &str = "__reverses = (__reverses | __turn) & !(__reverses & __turn);
 /// A pivot with what was eliminated by it.
 pub(super) struct Eliminated {
     pub(super) pivot: Pivot,
-    /// Row by row; empty for the last pivot.
+    /// Column by column of the pivot, a weight for each of its rows; empty for the last pivot.
     pub(super) inverse: Vec<Vec<Entry>>,
-    /// Rows below, and the multipliers of the pivot's rows that are subtracted from each.
+    /// What a component by these weights is multiplied by.
+    pub(super) length: Entry,
+    /// Rows below, that of the component across among them, and the multipliers of the pivot's rows that are subtracted from each.
     pub(super) multipliers: Vec<(usize, Vec<Entry>)>,
     /// Columns outside the pivot, and the pivot's rows there.
     pub(super) upper: Vec<(usize, Vec<Entry>)>,
@@ -37,18 +40,24 @@ impl Printer {
     /// Eliminates a pivot. The rows below the `closing` one, which the closed form follows, are multiplied by its determinant: so
     /// nothing waits for its reciprocal. The determinant is returned, too.
     pub(super) fn eliminate(&mut self, pivot: &Pivot, closing: bool) -> (Eliminated, Entry) {
-        let mut factor = None;
-        let (inverse, determinant) = match (pivot.rows.as_slice(), pivot.columns.as_slice()) {
-            (&[first, second], &[left, right]) if closing => {
+        let (mut factor, mut across, mut length) = (None, None, None);
+        let places = (pivot.component(), pivot.rows.as_slice(), pivot.columns.as_slice());
+        let (inverse, determinant) = match places {
+            (Some((rows, column)), ..) => {
+                let (along, share, ways) = self.component(rows, column);
+                (across, length) = (Some((rows[1], ways)), share);
+                (Inverse { kept: vec![along], ..Inverse::default() }, None)
+            }
+            (_, &[first, second], &[left, right]) if closing => {
                 let (adjugate, inverse, determinant) = self.adjugate([first, second], [left, right]);
                 factor = determinant.clone();
                 (Inverse { used: adjugate, kept: inverse }, determinant)
             }
-            (&[first, second], &[left, right]) => {
+            (_, &[first, second], &[left, right]) => {
                 let (inverse, determinant) = self.inverse([first, second], [left, right]);
                 (Inverse { used: inverse.clone(), kept: inverse }, determinant)
             }
-            (&[row], &[column]) => {
+            (_, &[row], &[column]) => {
                 let inverse = vec![vec![self.reciprocal(row, column)]];
                 (Inverse { used: inverse.clone(), kept: inverse }, self.entry(row, column))
             }
@@ -56,10 +65,11 @@ impl Printer {
         };
         let size = self.entries.len();
         let (mut growth, block) = (String::new(), self.block(pivot));
-        let rows: Vec<usize> = self.rest.iter().copied().filter(|row| !pivot.rows.contains(row)).collect();
+        let below = |row: &usize| pivot.sources().all(|source| source != *row);
+        let rows: Vec<usize> = self.rest.iter().copied().filter(below).collect();
         let columns: Vec<usize> = (0..size).filter(|column| !pivot.columns.contains(column)).collect();
         let above = |printer: &Self, column: usize| -> Vec<Entry> {
-            pivot.rows.iter().map(|row| printer.entry(*row, column)).collect()
+            pivot.sources().map(|row| printer.entry(row, column)).collect()
         };
         let upper: Vec<(usize, Vec<Entry>)> =
             columns.iter().map(|column| (*column, above(self, *column))).collect();
@@ -92,8 +102,18 @@ impl Printer {
                 self.text += "if T::LANES == 1 && !T::all(__bounded) {\nreturn (*__b, __bounded);\n}\n";
             }
         }
-        self.measure(pivot, determinant, &block, (&growth, factor.is_some()));
-        self.rest = rows;
+        match across {
+            None => self.measure(pivot, determinant, &block, (&growth, factor.is_some())),
+            Some((second, ways)) => {
+                for (column, entries) in &upper {
+                    let value = self.less(None, ways.iter().cloned().zip(entries.iter().cloned()).collect());
+                    self.set(second, *column, value);
+                }
+                multipliers.push((second, ways));
+                self.measure_component(second);
+            }
+        }
+        self.rest.retain(|row| !pivot.rows.contains(row));
         for row in &pivot.rows {
             (0..size).for_each(|column| self.set(*row, column, None));
         }
@@ -108,8 +128,8 @@ impl Printer {
             multipliers.into_iter().map(|(row, entries)| (row, keep_all(entries))).collect(),
             upper.into_iter().map(|(column, entries)| (column, keep_all(entries))).collect(),
         );
-        let kept = self.keep(factor.clone());
-        (Eliminated { inverse, multipliers, upper, factor: kept, pivot: pivot.clone() }, factor)
+        let (kept, length) = (self.keep(factor.clone()), self.keep(length));
+        (Eliminated { inverse, length, multipliers, upper, factor: kept, pivot: pivot.clone() }, factor)
     }
 
     /// Σ over the pivot's columns of the row's entries times column `k` of the inverse.
@@ -133,6 +153,34 @@ impl Printer {
                 Some(reciprocal)
             }
         }
+    }
+
+    /// Weights of two rows in their component along a column, the component's own factor, and what is subtracted of each row in the
+    /// component across. The latter is as long as the column, so nothing waits for a root: the metric of its row has it. Factors that
+    /// are kept have the length in the reference metric.
+    fn component(&mut self, [first, second]: [usize; 2], column: usize) -> (Vec<Entry>, Entry, Vec<Entry>) {
+        let unit = if self.once { None } else { self.weights([(first, column)]) };
+        let along = [first, second].map(|row| self.times(self.entry(row, column), &unit));
+        let squares = along.clone().map(|entry| (negated(&entry), entry));
+        let square = self.less(None, squares.into()).unwrap_or(Value::Number(0.0)).text();
+        self.operations.divisions += 1;
+        let reciprocal = self.name(&format!("__one / {square}"));
+        // Where a length vanishes the block is singular, and one solution is of no use.
+        if !self.once {
+            self.reciprocals.push(reciprocal.text());
+        }
+        self.operations.functions += 1;
+        let length = self.name(&format!("T::sqrt({square})"));
+        let shortened = self.times(Some(length.clone()), &Some(reciprocal.clone()));
+        let weight = self.times(Some(Value::Local(self.weight_of(second))), &shortened);
+        let weight = weight.map_or_else(String::new, |weight| weight.text());
+        let own = [first, second].map(|row| (row, column)).into_iter().filter(|place| self.is_own(*place));
+        let places = own.collect();
+        let scale = format!("({} * {})", self.scale_of(second), length.text());
+        self.scales.components.insert(second, Component { length: length.text(), scale, weight, places });
+        let reciprocal = self.times(Some(reciprocal), &unit);
+        let [x, y] = along.clone();
+        (along.into(), reciprocal, vec![y, negated(&x)])
     }
 
     /// The inverse of two rows, and their determinant.
@@ -167,7 +215,7 @@ impl Printer {
     ) -> (Vec<Vec<Entry>>, Vec<Vec<Entry>>, Entry) {
         let places = [(first, left), (first, right), (second, left), (second, right)];
         let plain = places.map(|(row, column)| self.entry(row, column));
-        let unit = self.unit([(first, left), (second, right)]);
+        let unit = self.weights([(first, left), (second, right)]);
         let [p, q, r, s] = plain.clone().map(|entry| self.times(entry, &unit));
         let [own_p, own_q, ..] = plain;
         let cross = self.less(None, vec![(own_q, r.clone())]);
@@ -186,7 +234,7 @@ impl Printer {
     }
 
     /// Notes that a reciprocal must be finite: a pivot without entries below it has no multiplier that would show it.
-    fn finite(&mut self, reciprocal: &Value) {
+    pub(super) fn finite(&mut self, reciprocal: &Value) {
         let _ = writeln!(self.text, "__bounded = __bounded & T::is_finite({});", reciprocal.text());
         self.comparisons += 1;
     }
@@ -207,14 +255,18 @@ impl Printer {
 
     /// Prints the bound on the multiplier of row `of` in `row`, times `factor`; `growth` is the largest of these.
     fn bound(&mut self, multiplier: &Entry, factor: &Entry, (row, of): (usize, usize), growth: &mut String) {
-        let (from, to) = (self.scales.row(of), self.scales.row(row));
+        let (from, to) = (self.scales.group(of), self.scales.group(row));
         let mut size = match multiplier {
             None => return,
             Some(Value::Number(value)) if from == to && value.abs() <= 1.0 && factor.is_none() => return,
             Some(multiplier) => format!("T::abs({})", multiplier.text()),
         };
         if from != to {
-            let _ = write!(size, " * __row_scales[{from}] * __weight{to}");
+            let scale = match self.scales.components.get(&of) {
+                Some(component) => component.scale.clone(),
+                None => format!("__row_scales[{from}]"),
+            };
+            let _ = write!(size, " * {scale} * {}", self.weight_of(row));
             self.operations.multiplications += 2;
         }
         let size = self.name(&size).text();
@@ -241,10 +293,19 @@ impl Printer {
     pub(super) fn last(&mut self, last: &Pivot, odd: bool, factor: &Entry) {
         let rank = last.rows.len();
         let zero = || number(0.0);
-        let rows = self.rows_of(last);
-        let scales = |name: &str, indices: &[usize]| list(indices.iter().map(|i| format!("{name}[{i}]")));
-        let (row_scales, coordinate_scales) =
-            (scales("__row_scales", &last.rows), scales("__coordinate_scales", &last.columns));
+        let rows = self.rows_of(&last.rows, &last.columns);
+        let coordinate_scales = list(last.columns.iter().map(|i| format!("__coordinate_scales[{i}]")));
+        let kind = format!("<__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>");
+        // The weights of components are at hand, their scales are not.
+        let weighted = last.rows.iter().any(|row| self.scales.components.contains_key(row));
+        let measures = last.rows.iter().map(|row| match weighted {
+            true => self.weight_of(*row),
+            false => self.scale_of(*row),
+        });
+        let (measures, factorize) = match weighted {
+            true => (list(measures), format!("__mbs::Direct{rank}::<T>::weighted")),
+            false => (list(measures), format!("{kind}::factorize")),
+        };
         let places = last.rows.iter().flat_map(|row| last.columns.iter().map(|column| (*row, *column)));
         let mut left = self.largest(places);
         if let Some(factor) = factor {
@@ -258,9 +319,8 @@ impl Printer {
         }
         let _ = write!(
             self.text,
-            "let (__last, __own) = <__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>::factorize(\
-             &{rows}, &{row_scales}, &{coordinate_scales});\n\
-             let __turn = <__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>::reverses(&__last);\n\
+            "let (__last, __own) = {factorize}(&{rows}, &{measures}, &{coordinate_scales});\n\
+             let __turn = {kind}::reverses(&__last);\n\
              {TURN}\n{odd}\
              let __ratio = T::min(__least, {left} * __own) / __largest;\n\
              let __margin = T::select(T::is_finite(__ratio), T::min(__ratio, __one), {});\n",
@@ -271,8 +331,8 @@ impl Printer {
     }
 
     /// The rows and columns that are left, as text.
-    pub(super) fn rows_of(&self, last: &Pivot) -> String {
+    pub(super) fn rows_of(&self, rows: &[usize], columns: &[usize]) -> String {
         let text = |entry: Entry| entry.map_or_else(|| number(0.0), |value| value.text());
-        list(last.rows.iter().map(|row| list(last.columns.iter().map(|c| text(self.entry(*row, *c))))))
+        list(rows.iter().map(|row| list(columns.iter().map(|c| text(self.entry(*row, *c))))))
     }
 }

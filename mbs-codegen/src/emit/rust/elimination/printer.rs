@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::pivots::Eliminated;
 use super::scales::Scales;
-use super::value::{Entry, Value};
+use super::value::{Entry, Value, negated};
 use super::{Cost, Elimination, NAME};
 use crate::emit::rust::code::list;
 use crate::emit::rust::scope::number;
@@ -19,6 +19,8 @@ const LARGEST_IN_LINE: usize = 8;
 #[derive(Clone, Default)]
 pub(super) struct Printer {
     pub(super) entries: Vec<Vec<Entry>>,
+    /// The block's own.
+    pub(super) own: Vec<Vec<Entry>>,
     pub(super) scales: Scales,
     pub(super) text: String,
     pub(super) locals: usize,
@@ -32,6 +34,8 @@ pub(super) struct Printer {
     pub(super) kept: Vec<String>,
     /// Rows that are not eliminated yet.
     pub(super) rest: Vec<usize>,
+    /// Reciprocals of squares of lengths that are asked at the end to be finite: these are positive, so their sum tells.
+    pub(super) reciprocals: Vec<String>,
     /// `true` for one solution without factors and margin.
     pub(super) once: bool,
 }
@@ -40,6 +44,7 @@ impl Printer {
     pub(super) fn print(mut self, order: &Order) -> Elimination {
         let size = self.entries.len();
         self.rest = (0..size).collect();
+        self.own = self.entries.clone();
         let once = (size <= LARGEST_IN_LINE).then(|| self.clone().solve_once(order));
         self.text = "let __one = T::constant(1.0);\n\
                      let __limit = T::constant(__mbs::__private::LARGEST_MULTIPLIER);\n\
@@ -48,10 +53,15 @@ impl Printer {
                      let mut __least = T::constant(::core::primitive::f64::MAX);\n"
             .into();
         self.scales_of_rows();
-        let places = (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
-        let largest = self.largest(places);
-        let _ = writeln!(self.text, "let __largest = {largest};");
+        // Lengths stand for their entries. They are known later.
+        let late = order.pivots.iter().any(|pivot| pivot.across.is_some());
+        if !late {
+            self.largest_of_all();
+        }
         let (done, last, factor) = self.eliminate_all(order);
+        if late {
+            self.largest_of_all();
+        }
         self.last(&last, is_odd(order), &factor);
         let elimination = core::mem::take(&mut self.operations);
         let factors = core::mem::take(&mut self.text);
@@ -83,13 +93,17 @@ impl Printer {
     /// Eliminates all pivots but the last, which is returned with the factor of its rows.
     fn eliminate_all(&mut self, order: &Order) -> (Vec<Eliminated>, Pivot, Entry) {
         let Some((last, pivots)) = order.pivots.split_last() else {
-            return (Vec::new(), Pivot { rows: Vec::new(), columns: Vec::new() }, None);
+            return (Vec::new(), Pivot { rows: Vec::new(), columns: Vec::new(), across: None }, None);
         };
         let (mut done, mut factor) = (Vec::new(), None);
         for (index, pivot) in pivots.iter().enumerate() {
             let (eliminated, own) = self.eliminate(pivot, index + 1 == pivots.len());
             factor = own;
             done.push(eliminated);
+        }
+        if !self.reciprocals.is_empty() {
+            let sum = core::mem::take(&mut self.reciprocals).join(" + ");
+            self.finite(&Value::Local(sum));
         }
         (done, last.clone(), factor)
     }
@@ -124,8 +138,29 @@ impl Printer {
         }
     }
 
+    /// Text of a row's scale.
+    pub(super) fn scale_of(&self, row: usize) -> String {
+        match self.scales.components.get(&row) {
+            Some(component) => component.scale.clone(),
+            None => format!("__row_scales[{row}]"),
+        }
+    }
+
+    /// Text of one over a row's scale.
+    pub(super) fn weight_of(&self, row: usize) -> String {
+        match self.scales.components.get(&row) {
+            Some(component) => component.weight.clone(),
+            None => format!("__weight{}", self.scales.group(row)),
+        }
+    }
+
     pub(super) fn entry(&self, row: usize, column: usize) -> Entry {
         self.entries.get(row).and_then(|row| row.get(column)).cloned().flatten()
+    }
+
+    /// `true` where no pivot has changed an entry of the block.
+    pub(super) fn is_own(&self, (row, column): (usize, usize)) -> bool {
+        self.own.get(row).and_then(|row| row.get(column)).is_some_and(|own| *own == self.entry(row, column))
     }
 
     pub(super) fn set(&mut self, row: usize, column: usize, value: Entry) {
@@ -203,6 +238,9 @@ impl Printer {
     pub(super) fn keep(&mut self, value: Entry) -> Entry {
         match value {
             value if self.once => value,
+            Some(Value::Local(name)) if name.starts_with('-') => {
+                negated(&self.keep(negated(&Some(Value::Local(name)))))
+            }
             Some(Value::Local(name)) => {
                 let index = self.kept.iter().position(|kept| *kept == name).unwrap_or(self.kept.len());
                 if index == self.kept.len() {

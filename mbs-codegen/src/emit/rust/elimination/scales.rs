@@ -1,5 +1,7 @@
 //! Scales of the rows and columns of a block.
 
+use std::collections::BTreeMap;
+
 use crate::equations::Equations;
 use crate::program::BlockProgram;
 use crate::symbolic::NodeId;
@@ -10,6 +12,21 @@ pub(super) struct Scales {
     pub(super) rows: Vec<usize>,
     /// `None` for 1.
     pub(super) columns: Vec<Option<usize>>,
+    /// Rows that components across a column have taken the place of.
+    pub(super) components: BTreeMap<usize, Component>,
+}
+
+/// Names of what measures the component of two rows across a column.
+#[derive(Clone)]
+pub(super) struct Component {
+    /// The column's length in the reference metric, a factor of the component.
+    pub(super) length: String,
+    /// Scale of the component's row.
+    pub(super) scale: String,
+    /// One over that.
+    pub(super) weight: String,
+    /// Places of the column's entries in the block, none where pivots before have changed them.
+    pub(super) places: Vec<(usize, usize)>,
 }
 
 impl Scales {
@@ -28,10 +45,15 @@ impl Scales {
         Scales {
             columns: columns.iter().enumerate().map(column).collect(),
             rows: (0..rows.len()).map(|index| first(&rows, index)).collect(),
+            components: BTreeMap::new(),
         }
     }
 
-    pub(super) fn row(&self, row: usize) -> usize {
-        self.rows.get(row).copied().unwrap_or(row)
+    /// Number that rows of one scale share.
+    pub(super) fn group(&self, row: usize) -> usize {
+        match self.components.contains_key(&row) {
+            true => self.rows.len() + row,
+            false => self.rows.get(row).copied().unwrap_or(row),
+        }
     }
 }
