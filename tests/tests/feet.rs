@@ -3,6 +3,8 @@
 
 #[path = "feet/followers.rs"]
 mod followers;
+#[path = "feet/hollows.rs"]
+mod hollows;
 
 use core::f64::consts::{PI, TAU};
 

@@ -65,7 +65,9 @@ pub(super) fn taylor<T: Scalar, const C: usize, const K: usize>(coefficients: [T
         for (j, coefficient) in scaled.iter().enumerate().skip(order).rev() {
             let is_highest = C < j + 3;
             let part = if (j - order) % 2 == 0 { &mut parts[0] } else { &mut parts[1] };
-            *part = if is_highest { *coefficient + unknown } else { *part * square + *coefficient };
+            // To the one that is added last: nothing waits for it.
+            let coefficient = if j == order { *coefficient + unknown } else { *coefficient };
+            *part = if is_highest { coefficient } else { *part * square + coefficient };
         }
         let [even, odd] = parts;
         if C > order + 1 { odd * x + even } else { even }

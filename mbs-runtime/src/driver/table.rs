@@ -42,14 +42,6 @@ impl<'a, const C: usize> Table<'a, C> {
         self.jet(x)
     }
 
-    /// Number of the piece at `x`, which lies within the first period: `guess`, where it holds there.
-    #[inline(always)]
-    fn index(&self, x: f64, guess: usize) -> usize {
-        let begins = self.knots.get(guess).is_some_and(|knot| *knot <= x);
-        let holds = begins && self.knots.get(guess.saturating_add(1)).is_none_or(|next| x < *next);
-        if holds { guess } else { searched(self.knots, x) }
-    }
-
     /// Number of whole periods before `x`, as an argument; 0 where there is none.
     #[inline]
     fn shift(&self, x: f64) -> f64 {
@@ -71,18 +63,20 @@ impl<'a, const C: usize> Table<'a, C> {
             None => (0.0, 0.0, self.knots.len().saturating_sub(1)),
         };
         let local = x - shift;
-        // So many periods away that the rest after them has no digit left.
-        let kept = self.period.is_none_or(|period| (local - first).abs() <= 2.0 * period);
-        // 0 for NaN, far too much for what is negative: then the knots are searched.
-        let guess = ((place - turns) * intervals as f64) as i64 as usize;
-        let index = self.index(local, guess);
-        match (self.knots.get(index), self.pieces.get(index)) {
-            (Some(knot), Some(coefficients)) if kept => {
-                let is_before = self.period.is_none() && local < *knot;
-                Place { origin: shift + knot, coefficients, is_before }
+        // The piece there of evenly spaced knots; 0 for NaN, and for what is negative.
+        let guess = ((place - turns) * intervals as f64) as u32 as usize;
+        if let (Some(knot), Some(coefficients)) = (self.knots.get(guess), self.pieces.get(guess)) {
+            let end = match (self.knots.get(guess.saturating_add(1)), self.period) {
+                (Some(next), _) => *next,
+                (None, Some(period)) => first + period,
+                (None, None) => f64::INFINITY,
+            };
+            if *knot <= local && local < end {
+                return Place { origin: shift + knot, coefficients, is_before: false };
             }
-            _ => Place { origin: f64::NAN, coefficients: &const { [f64::NAN; C] }, is_before: false },
         }
+        // By its parts, which are in registers, and seldom.
+        searched_piece(self.knots, self.pieces, self.period, (local, shift))
     }
 }
 
@@ -102,8 +96,28 @@ impl<const C: usize> Place<'_, C> {
     }
 }
 
-/// Number of the last knot that is not above `x`, by halving.
+/// The piece at `x`, by halving; `shift`: the whole periods that `x` is less by.
 #[inline(never)]
+fn searched_piece<'a, const C: usize>(
+    knots: &'a [f64],
+    pieces: &'a [[f64; C]],
+    period: Option<f64>,
+    (x, shift): (f64, f64),
+) -> Place<'a, C> {
+    let index = searched(knots, x);
+    // So many periods away that the rest after them has no digit left.
+    let first = knots.first().copied().unwrap_or(f64::NAN);
+    let kept = period.is_none_or(|period| (x - first).abs() <= 2.0 * period);
+    match (knots.get(index), pieces.get(index)) {
+        (Some(knot), Some(coefficients)) if kept => {
+            let is_before = period.is_none() && x < *knot;
+            Place { origin: shift + knot, coefficients, is_before }
+        }
+        _ => Place { origin: f64::NAN, coefficients: &const { [f64::NAN; C] }, is_before: false },
+    }
+}
+
+/// Number of the last knot that is not above `x`, by halving.
 fn searched(knots: &[f64], x: f64) -> usize {
     knots.partition_point(|knot| *knot <= x).saturating_sub(1)
 }

@@ -103,12 +103,22 @@ pub(crate) fn coordinate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize,
     scales: &[R; N],
     t: R,
 ) -> Option<Failure> {
-    let limit = positions::COARSEST_RESOLUTION.of::<R>();
-    let resolved = |(coordinate, scale): (&R, &R)| R::EPSILON * coordinate.abs() <= limit * *scale;
-    if q.iter().zip(scales).fold(true, |all, pair| all & resolved(pair)) {
+    if are_resolved(q, scales) {
         return None;
     }
-    unresolved::<S, R, N, M>(q, q.iter().zip(scales).position(|pair| !resolved(pair)), t)
+    unresolved::<S, R, N, M>(q, q.iter().zip(scales).position(|pair| !is_resolved(pair)), t)
+}
+
+/// `true` if all coordinates are finite, and none is too large to be resolved.
+#[inline(always)]
+pub(crate) fn are_resolved<R: Real, const N: usize>(q: &[R; N], scales: &[R; N]) -> bool {
+    q.iter().zip(scales).fold(true, |all, pair| all & is_resolved(pair))
+}
+
+/// Written so that NaN is not resolved.
+#[inline(always)]
+fn is_resolved<R: Real>((coordinate, scale): (&R, &R)) -> bool {
+    R::EPSILON * coordinate.abs() <= positions::COARSEST_RESOLUTION.of::<R>() * *scale
 }
 
 /// The first coordinate that is not finite, or the one at `index`, which is too large.

@@ -10,7 +10,7 @@ use crate::linear_algebra::determines_rates;
 use crate::linear_algebra::vectors::{extent, largest_difference};
 use crate::mechanism::margin::Margin;
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::{Kinematic, Mechanism};
+use crate::mechanism::{Entry, Kinematic, Mechanism};
 use crate::scalar::number::Real;
 use crate::tolerances::singular::LEAST_MARGIN;
 
@@ -259,10 +259,17 @@ pub(crate) fn branch_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, con
     let counts = |index: usize| assembling || !S::BRANCHES_AT_START.get(index).copied().unwrap_or(false);
     let broken = |(index, value): (usize, &R)| counts(index) && !R::constant(0.0).less(*value);
     let index = branches.as_ref().iter().enumerate().position(broken)?;
-    let branch = entry(S::BRANCHES, u16::try_from(index).unwrap_or(u16::MAX));
     let value = branches.as_ref().get(index).copied().unwrap_or(R::constant(0.0));
-    Some(match value.is_finite() {
-        true => FailureKind::WrongBranch { branch, value: value.to_f64() }.at(t.to_f64()),
+    Some(wrong_branch(S::BRANCHES, (index, value.to_f64()), t.to_f64()))
+}
+
+/// The failure of the branch at `index`, whose value does not hold.
+#[cold]
+#[inline(never)]
+fn wrong_branch(branches: &'static [Entry], (index, value): (usize, f64), t: f64) -> Failure {
+    let branch = entry(branches, u16::try_from(index).unwrap_or(u16::MAX));
+    match value.is_finite() {
+        true => FailureKind::WrongBranch { branch, value }.at(t),
         false => FailureKind::NonFinite { name: branch.name, line: branch.line }.without_time(),
-    })
+    }
 }

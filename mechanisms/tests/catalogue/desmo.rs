@@ -74,7 +74,7 @@ fn tables_of_a_quick_law_contradict_each_other_within_the_width() {
             design.curves().expect("a pair of cams").map(|curve| curve.table(points).expect("a table"));
         let largest =
             Misfit::of(&design, &tables, 1440, 0.3).expect("a contradiction below the width").largest();
-        println!("desmo, 4-5-6-7 in 75 deg, {points} points: mismatch {largest:.1e?}");
+        println!("desmo, 4-5-6-7 in 75 deg, {points} points: mismatch {:.1e} m", largest[0]);
         assert!(largest[0] > 0.0 && largest[0] < 1e-6, "{largest:?}");
     }
 }

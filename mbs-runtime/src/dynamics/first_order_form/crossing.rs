@@ -103,6 +103,19 @@ where
         Err(failed.unwrap_or(FailureKind::StepTooSmall { step: 0.0 }.at(until.to_f64())))
     }
 
+    /// The rate of a state, by all that the formulation solves for.
+    #[inline(never)]
+    pub(super) fn rate_solved(
+        &mut self,
+        t: R,
+        y: &Moving<S, R, N, M>,
+    ) -> Result<Moving<S, R, N, M>, Failure> {
+        match &self.solve(t, y) {
+            Ok(solved) => Ok(self.phased(t, solved.rate)),
+            Err(failure) => self.rate_as_it_is(t, y, failure),
+        }
+    }
+
     /// The rate of a state that has none on the constraints, with the `failure` of that: where no step can be made smaller, as it is.
     #[cold]
     #[inline(never)]

@@ -13,8 +13,8 @@ use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::{Tolerance, worse};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::Failure;
+use crate::mechanism::Mechanism;
 use crate::mechanism::dynamic::Dynamic;
-use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Real;
 use crate::tolerances::singular;
 
@@ -76,6 +76,9 @@ where
     /// `true` if a text has contacts, frictions with stiction, or events.
     const MAY_CHANGE: bool = !S::CONTACTS.is_empty() || S::HAS_MODES;
 
+    /// `true` if a drive prescribes a rate, or an input has one.
+    const MOVES: bool = !S::PHASES.is_empty() || S::HAS_SIGNALS;
+
     /// Those of a motion that continues `from`.
     pub(crate) fn new(
         model: &'a Model<'a, S, R, N, M>,
@@ -86,7 +89,7 @@ where
         let (tolerance, start) = (radau::of_fixed_steps(), from.t);
         let seen = (from.t, from.solved.margin);
         let (lambda, end) = (from.solved.lambda, *from);
-        let moving = (!S::PHASES.is_empty() || S::HAS_SIGNALS).then(|| model.mechanism.clone());
+        let moving = if const { Self::MOVES } { Some(model.mechanism.clone()) } else { None };
         Equations {
             model,
             formulation,
@@ -101,7 +104,7 @@ where
             passage: None,
             before: None,
             scrutiny: Scrutiny::beyond(),
-            parameters: Self::MAY_CHANGE.then_some(*model.parameters),
+            parameters: None,
             quiet: start,
             locates: true,
             changed: (start, 0),
@@ -120,8 +123,10 @@ where
         Equations { locates: false, ..self }
     }
 
-    pub(crate) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
-        Equations { tolerance, ..self }
+    /// Of steps that are controlled with `tolerance`.
+    pub(crate) fn with_tolerance(mut self, tolerance: Tolerance<R>) -> Self {
+        self.divide(tolerance);
+        self
     }
 
     /// Result of `look`, which leaves no trace in the run but the count of its evaluations, kept apart. No step can be made
@@ -173,6 +178,9 @@ where
     /// Steps can be made smaller from now on, and are controlled with `tolerance`.
     pub(crate) fn divide(&mut self, tolerance: Tolerance<R>) {
         (self.fixed, self.tolerance) = (false, tolerance);
+        if const { Self::MAY_CHANGE } {
+            self.parameters = self.parameters.or(Some(*self.model.parameters));
+        }
     }
 
     /// Of steps of a method of `order` that cannot be made smaller.
@@ -210,26 +218,32 @@ where
         let phases = if const { S::PHASES.is_empty() } { *increments } else { self.phases(t, increments) };
         let Equations { model, formulation, start, moving, integrating, parameters, lambda, counts, .. } =
             self;
-        let model = *model;
-        let parameters = match parameters {
-            Some(parameters) if const { Self::MAY_CHANGE } => parameters,
-            _ => model.parameters,
+        let present;
+        let model = match parameters {
+            Some(parameters) if const { Self::MAY_CHANGE } => {
+                present = Model { parameters, ..**model };
+                &present
+            }
+            _ => *model,
         };
-        let present = Model { parameters, ..*model };
-        let Some(mechanism) = moving else {
-            let model = if const { Self::MAY_CHANGE } { &present } else { model };
-            return solve(model, formulation, lambda, counts);
+        let (parameters, moved);
+        // `solve` at one place, so that it is compiled into it.
+        let model = match moving {
+            Some(mechanism) if const { Self::MOVES } => {
+                mechanism.carry_signals(model.mechanism, t - *start);
+                if *integrating {
+                    mechanism.set_phases(phases);
+                } else {
+                    mechanism.set_phases(model.mechanism.phases());
+                    mechanism.advance_phases(*start, t);
+                }
+                parameters = model.alike(mechanism.parameters());
+                moved = Model { mechanism, parameters: &parameters, ..*model };
+                &moved
+            }
+            _ => model,
         };
-        mechanism.carry_signals(model.mechanism, t - *start);
-        if *integrating {
-            mechanism.set_phases(phases);
-        } else {
-            mechanism.set_phases(model.mechanism.phases());
-            mechanism.advance_phases(*start, t);
-        }
-        let parameters = present.alike(mechanism.parameters());
-        let moved = Model { mechanism, parameters: &parameters, ..*model };
-        solve(&moved, formulation, lambda, counts)
+        solve(model, formulation, lambda, counts)
     }
 
     /// Rates and multipliers of a state.
@@ -325,10 +339,24 @@ where
 
     #[inline]
     fn rate(&mut self, t: R, y: &Self::State) -> Result<Self::State, Failure> {
-        match &self.solve(t, y) {
-            Ok(solved) => Ok(self.phased(t, solved.rate)),
-            Err(failure) => self.rate_as_it_is(t, y, failure),
+        match self.rate_of_stage(t, y) {
+            Some(rate) => Ok(rate),
+            None => self.rate_solved(t, y),
         }
+    }
+
+    #[inline(always)]
+    fn rate_of_stage(&mut self, t: R, y: &Self::State) -> Option<Self::State> {
+        if const { !S::IS_PARTITIONED } {
+            return None;
+        }
+        let rate = self.at(
+            t,
+            &y.phases,
+            #[inline(always)]
+            |model, formulation, lambda, counts| formulation.rate(model, t, &y.y, lambda, counts),
+        );
+        rate.map(|rate| self.phased(t, rate))
     }
 
     fn collocate(
@@ -462,18 +490,5 @@ where
             });
         }
         largest
-    }
-}
-
-impl<S, F, R, const N: usize, const M: usize> Equations<'_, S, F, R, N, M>
-where
-    S: Dynamic<R, N, M>,
-    R: Real,
-{
-    /// Reference metric of a phase: that of rows of its unit, of which its drive is one.
-    fn scale(&self, phase: &Entry) -> R {
-        let scales = self.model.mechanism.row_scales(self.model.parameters);
-        let mut rows = S::ROWS.iter().zip(scales);
-        rows.find(|(row, _)| row.unit == phase.unit).map_or(R::constant(1.0), |(_, scale)| scale)
     }
 }

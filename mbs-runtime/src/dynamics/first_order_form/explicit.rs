@@ -54,7 +54,16 @@ where
         let ended = match &mut self.integrator.step(&mut motion, from.t, h, &start.y, &start.rate) {
             // Once, and by reference: what a step is made of is long.
             Ok(end) => match &motion.project_and_solve(t, end) {
-                Ok(solved) => Ok(Instant { t, y: end.y, solved: *solved, carried: solved.rate.qd }),
+                Ok(solved) => {
+                    let next = Instant { t, y: end.y, solved: *solved, carried: solved.rate.qd };
+                    let is_near = solved.margin.min(from.solved.margin) < near();
+                    // Nearly all steps end here, where their result is written.
+                    if !is_near && motion.counts.singular == counts.singular {
+                        *counts = motion.counts;
+                        return Ok(next);
+                    }
+                    Ok(next)
+                }
                 Err(failure) => model.require_bounded(t, from, &end.y.q).and(Err(*failure)),
             },
             Err(failure) => Err(*failure),

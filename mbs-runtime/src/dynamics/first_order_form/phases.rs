@@ -1,11 +1,13 @@
 //! Phases of drives that prescribe a rate, integrated with the motion.
 
+use crate::dynamics::first_order_form::equations::Equations;
 use crate::dynamics::integrators::equation::Equation;
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::vector::Vector;
 use crate::failure::Failure;
-use crate::mechanism::Mechanism;
+use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::phase::{Phase, Speed};
+use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::{Real, Scalar};
 
 /// Order of the integrals that [`Mechanism::advance_phases`] takes over a step: methods of a higher order integrate the
@@ -32,6 +34,13 @@ impl<T: Scalar, Y: Vector<T>, P: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>> V
     fn add(&mut self, weight: T, term: &Self) {
         self.y.add(weight, &term.y);
         add(&mut self.phases, weight, &term.phases);
+    }
+
+    #[inline(always)]
+    fn scaled(&self, weight: T) -> Self {
+        let mut scaled = Phased { y: self.y.scaled(weight), phases: self.phases };
+        scaled.phases.as_mut().iter_mut().for_each(|phase| phase.value = weight * phase.value);
+        scaled
     }
 
     #[inline(always)]
@@ -121,4 +130,17 @@ where
     let end = method.step(&mut equation, t, h, &y, &rate)?;
     let rates = equation.rate(t + h, &end)?;
     Ok(advanced(start, &end.phases, &rates.phases))
+}
+
+impl<S, F, R, const N: usize, const M: usize> Equations<'_, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+{
+    /// Reference metric of a phase: that of rows of its unit, of which its drive is one.
+    pub(super) fn scale(&self, phase: &Entry) -> R {
+        let scales = self.model.mechanism.row_scales(self.model.parameters);
+        let mut rows = S::ROWS.iter().zip(scales);
+        rows.find(|(row, _)| row.unit == phase.unit).map_or(R::constant(1.0), |(_, scale)| scale)
+    }
 }

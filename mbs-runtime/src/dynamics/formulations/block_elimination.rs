@@ -223,7 +223,8 @@ where
         let mass = at(&masses, index);
         let positive = zero.less(mass);
         inert &= T::all(positive);
-        let share = at(&open, index) * (one / T::select(positive, mass, one));
+        // Where a mass is none the result is not read.
+        let share = at(&open, index) * (one / mass);
         if let (Some(acceleration), Some(open)) = (qdd.get_mut(index), open.get_mut(index)) {
             (*acceleration, *open) = (share, *open - share * mass);
         }

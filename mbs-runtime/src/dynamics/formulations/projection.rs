@@ -1,6 +1,7 @@
 //! Projection: positions and velocities put back onto the constraints by the shortest way in the mass's measure.
 
 use crate::dynamics::formulations::block_elimination;
+use crate::dynamics::formulations::block_elimination::PlaceOf;
 use crate::dynamics::formulations::singular::limit_rows::{Passing, at_limit};
 use crate::dynamics::formulations::unstabilized::{factorize, solve};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -61,6 +62,50 @@ impl Projection {
         }
     }
 
+    /// Rates and multipliers at `(t, y)`, whose place is known: by blocks where it is regular.
+    #[inline(never)]
+    fn solve_at<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        (t, y): (R, &IntegratorState<R, N, S::States>),
+        place: &PlaceOf<S, R, N, M>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        if place.is_regular() {
+            // By reference: `?` would move the rates once more.
+            match &block_elimination::solve(model, (t, y), place, lambda, counts) {
+                Ok(Some(solved)) => return Ok(*solved),
+                Ok(None) => {}
+                Err(failure) => return Err(*failure),
+            }
+        }
+        self.solve_by_rows(model, (t, y), lambda, counts)
+    }
+
+    /// Rates alone of [`solve_by_rows`](Self::solve_by_rows).
+    #[cold]
+    #[inline(never)]
+    fn rate_by_rows<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        state: (R, &IntegratorState<R, N, S::States>),
+        lambda: &mut [R; M],
+        counts: &mut Counts,
+    ) -> Option<IntegratorState<R, N, S::States>> {
+        let before = *counts;
+        match &self.solve_by_rows(model, state, lambda, counts) {
+            Ok(solved) => {
+                *lambda = solved.lambda;
+                Some(solved.rate)
+            }
+            Err(_) => {
+                *counts = before;
+                None
+            }
+        }
+    }
+
     /// Rates and multipliers at `(t, y)` by all rows together, with the limits of those that lose their hold.
     #[inline(never)]
     pub(crate) fn solve_by_rows<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
@@ -112,16 +157,46 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         }
         if S::IS_PARTITIONED && has_blocks(model) {
             let place = block_elimination::place(model, t, y);
-            if place.is_regular() {
-                // By reference: `?` would move the rates once more.
-                match &block_elimination::solve(model, (t, y), &place, lambda, counts) {
-                    Ok(Some(solved)) => return Ok(*solved),
-                    Ok(None) => {}
-                    Err(failure) => return Err(*failure),
+            return self.solve_at(model, (t, y), &place, lambda, counts);
+        }
+        self.solve_by_rows(model, (t, y), lambda, counts)
+    }
+
+    #[inline(always)]
+    fn rate(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+        lambda: &mut [R; M],
+        counts: &mut Counts,
+    ) -> Option<IntegratorState<R, N, S::States>> {
+        if !S::IS_PARTITIONED || !has_blocks(model) || self.stages_of(model) == ProjectedStages::All {
+            return None;
+        }
+        let place = block_elimination::place(model, t, y);
+        let evaluations = counts.evaluations;
+        if place.is_regular() {
+            match block_elimination::solve(model, (t, y), &place, lambda, counts) {
+                Ok(Some(solved)) => {
+                    *lambda = solved.lambda;
+                    return Some(solved.rate);
+                }
+                Ok(None) => {}
+                Err(_) => {
+                    counts.evaluations = evaluations;
+                    return None;
                 }
             }
         }
-        self.solve_by_rows(model, (t, y), lambda, counts)
+        // By reference: it would be written where the rates above are, which then were no registers.
+        match &self.rate_by_rows(model, (t, y), lambda, counts) {
+            Some(rate) => Some(*rate),
+            None => {
+                counts.evaluations = evaluations;
+                None
+            }
+        }
     }
 
     fn solve_as_it_is(
@@ -174,20 +249,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         } else {
             None
         };
-        match settled {
-            Some(place) if place.is_regular() => {
-                match &block_elimination::solve_apart(model, (t, y), &place, lambda, counts) {
-                    Ok(Some(solved)) => return Ok(*solved),
-                    Ok(None) => {}
-                    Err(failure) => return Err(*failure),
-                }
-            }
-            Some(_) => {}
-            None => {
-                *y = before;
-                project_by_rows(model, t, y, counts)?;
-            }
+        if let Some(place) = &settled {
+            return self.solve_at(model, (t, y), place, lambda, counts);
         }
+        *y = before;
+        project_by_rows(model, t, y, counts)?;
         self.solve_by_rows(model, (t, y), lambda, counts)
     }
 }

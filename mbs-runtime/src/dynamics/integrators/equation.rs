@@ -16,6 +16,13 @@ pub trait Equation<T: Scalar> {
     /// Any that leaves the rate undetermined.
     fn rate(&mut self, t: T, y: &Self::State) -> Result<Self::State, Failure>;
 
+    /// [`rate`](Self::rate) compiled into the place of the call, for a loop of stages: without room for a failure the rate stays in
+    /// registers. `None` where it is known by [`rate`](Self::rate) alone.
+    #[inline(always)]
+    fn rate_of_stage(&mut self, _t: T, _y: &Self::State) -> Option<Self::State> {
+        None
+    }
+
     /// Projects a state at the end of a step onto the constraints.
     ///
     /// # Errors

@@ -79,14 +79,13 @@ impl FixedStep for RungeKutta4 {
     ) -> Result<E::State, Failure> {
         // Places and weights of the stages after the first; as a loop, so that the equation is compiled into it once.
         const STAGES: [(f64, f64); 3] = [(0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
-        let (mut stage, mut change) = (*rate, y.zero());
-        change.add(T::constant(1.0 / 6.0), rate);
+        let (mut stage, mut change) = (*rate, rate.scaled(T::constant(1.0 / 6.0)));
         for (place, weight) in STAGES {
-            // By reference: `?` would move the rate once more.
-            match &equation.rate(t + T::constant(place) * h, &y.plus(h, &[place], [&stage])) {
-                Ok(rate) => stage = *rate,
-                Err(failure) => return Err(*failure),
-            }
+            let (t, y) = (t + T::constant(place) * h, y.plus(h, &[place], [&stage]));
+            stage = match equation.rate_of_stage(t, &y) {
+                Some(rate) => rate,
+                None => equation.rate(t, &y)?,
+            };
             change.add(T::constant(weight), &stage);
         }
         let mut next = *y;

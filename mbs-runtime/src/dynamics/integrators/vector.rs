@@ -12,11 +12,23 @@ pub trait Vector<T: Scalar>: Copy {
     /// Adds `weight` times `term`.
     fn add(&mut self, weight: T, term: &Self);
 
+    /// `weight` times `self`.
+    #[inline(always)]
+    fn scaled(&self, weight: T) -> Self {
+        let mut scaled = self.zero();
+        scaled.add(weight, self);
+        scaled
+    }
+
     /// `self` + h Σ weightₖ termₖ. The sum is formed first, so that a small change keeps its digits.
     #[inline(always)]
     fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
-        let mut change = self.zero();
-        for (weight, term) in weights.iter().zip(&terms) {
+        let mut all = weights.iter().zip(&terms);
+        let mut change = match all.next() {
+            Some((weight, term)) => term.scaled(T::constant(*weight)),
+            None => self.zero(),
+        };
+        for (weight, term) in all {
             change.add(T::constant(*weight), term);
         }
         let mut sum = *self;
@@ -41,6 +53,13 @@ impl<T: Scalar, const L: usize> Vector<T> for [T; L] {
     #[inline(always)]
     fn add(&mut self, weight: T, term: &Self) {
         add(self, weight, term);
+    }
+
+    #[inline(always)]
+    fn scaled(&self, weight: T) -> Self {
+        let mut scaled = *self;
+        scaled.iter_mut().for_each(|term| *term = weight * *term);
+        scaled
     }
 }
 
@@ -79,6 +98,18 @@ impl<T: Scalar, const N: usize, Z: Copy + AsRef<[T]> + AsMut<[T]>> Vector<T> for
         add(&mut self.qd, weight, &term.qd);
         add(self.states.as_mut(), weight, term.states.as_ref());
         self.work = self.work + weight * term.work;
+    }
+
+    #[inline(always)]
+    fn scaled(&self, weight: T) -> Self {
+        let mut states = self.states;
+        states.as_mut().iter_mut().for_each(|term| *term = weight * *term);
+        IntegratorState {
+            q: self.q.scaled(weight),
+            qd: self.qd.scaled(weight),
+            states,
+            work: weight * self.work,
+        }
     }
 
     #[inline(always)]

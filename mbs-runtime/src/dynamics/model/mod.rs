@@ -6,6 +6,7 @@ pub(crate) mod instant;
 pub(crate) mod method;
 pub(crate) mod metric;
 mod multipliers;
+mod number_checks;
 pub(crate) mod sign_checks;
 
 use crate::dynamics::integrators::vector::IntegratorState;
@@ -89,6 +90,20 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure>;
+
+    /// Rates of [`solve`](Self::solve) alone, of a stage; `lambda` (M) become those of the state. `None` where they are not known this
+    /// way, with all as before. Without room for a failure the rates stay in registers.
+    #[inline(always)]
+    fn rate(
+        &self,
+        _model: &Model<'_, S, R, N, M>,
+        _t: R,
+        _y: &IntegratorState<R, N, S::States>,
+        _lambda: &mut [R; M],
+        _counts: &mut Counts,
+    ) -> Option<IntegratorState<R, N, S::States>> {
+        None
+    }
 
     /// Accelerations of a stage that cannot be put onto the constraints, in a step that cannot be made smaller: of the
     /// state as it is.
@@ -237,15 +252,6 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         self.with_modes_of(parameters)
     }
 
-    /// Fails where a coordinate, velocity or state is no number, or a coordinate is not resolved.
-    pub(crate) fn check(&self, t: R, y: &IntegratorState<R, N, S::States>) -> Result<(), Failure> {
-        let bad = checks::time_failure(t)
-            .or_else(|| checks::coordinate_failure::<S, R, N, M>(&y.q, &self.metric.coordinates, t))
-            .or_else(|| checks::non_finite(&y.qd, S::COORDINATES))
-            .or_else(|| checks::non_finite_among(y.states.as_ref(), S::STATES));
-        bad.map_or(Ok(()), Err)
-    }
-
     /// The largest of `values` (N) over its coordinate's scale.
     pub(crate) fn largest(&self, values: &[R; N]) -> R {
         let scaled =
@@ -341,26 +347,6 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         }
         let (kinetic, available) = (end.kinetic.to_f64(), available.to_f64());
         Err(FailureKind::EnergyGain { kinetic, available }.at(next.t.to_f64()))
-    }
-
-    /// Fails with the name of the acceleration, multiplier or force that is no number.
-    #[inline(always)]
-    pub(crate) fn check_solved(
-        &self,
-        qdd: &[R; N],
-        lambda: &[R; M],
-        force: &[R; N],
-        gamma: &[R; M],
-    ) -> Result<(), Failure> {
-        let finite = |values: &[R]| values.iter().fold(true, |all, value| all & value.is_finite());
-        if finite(qdd) && finite(lambda) {
-            return Ok(());
-        }
-        let bad = checks::non_finite(force, S::COORDINATES)
-            .or_else(|| checks::non_finite(gamma, S::ROWS))
-            .or_else(|| checks::non_finite(qdd, S::COORDINATES))
-            .or_else(|| checks::non_finite(lambda, S::ROWS));
-        bad.map_or(Ok(()), Err)
     }
 
     /// Rates of a state whose accelerations and multipliers are known.

@@ -58,11 +58,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         if const { S::BRANCHES.is_empty() } {
             return Ok(());
         }
-        let failure = self.moved(from, t, |Model { mechanism, parameters, .. }| {
+        self.moved(from, t, |Model { mechanism, parameters, .. }| {
             let position = mechanism.position(parameters, &y.q, t);
-            position::branch_failure(*mechanism, parameters, &position, t, false)
-        });
-        failure.map_or(Ok(()), Err)
+            // By reference: else the room of a failure is copied where there is none.
+            match &position::branch_failure(*mechanism, parameters, &position, t, false) {
+                Some(failure) => Err(*failure),
+                None => Ok(()),
+            }
+        })
     }
 
     /// Fails with the first working range that is left along a step between `start` and `end` (s), with the time at which it is; `at`

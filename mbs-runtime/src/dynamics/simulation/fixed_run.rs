@@ -7,7 +7,7 @@ use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::{Method, SteppedInModes};
 use crate::dynamics::model::{Counts, Model};
 use crate::dynamics::simulation::graded_steps::ContactSteps;
-use crate::dynamics::simulation::{Fresh, Simulation};
+use crate::dynamics::simulation::{Began, Fresh, Simulation, Start};
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
@@ -44,7 +44,7 @@ impl<R: Real, P, G, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut
 
     /// Its beginning and its end.
     fn ends(&self) -> Ends<'_, R, N, M, Z> {
-        (&self.from, &self.next)
+        (self.from.start(), &self.next)
     }
 }
 
@@ -62,7 +62,7 @@ fn between<R: Real, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut
 }
 
 /// Beginning and end of a step, where they are stored.
-type Ends<'a, R, const N: usize, const M: usize, Z> = (&'a Fresh<R, N, M, Z>, &'a Instant<R, N, M, Z>);
+type Ends<'a, R, const N: usize, const M: usize, Z> = (Start<'a, R, N, M, Z>, &'a Instant<R, N, M, Z>);
 
 /// Parameters without the contacts that are open where a step begins, and the time (s) up to which all stay open by the bounds of the
 /// text.
@@ -140,34 +140,37 @@ where
     #[inline(always)]
     fn whole_step(&mut self, h: R) -> Result<(), Failure> {
         let mut counts = self.counts;
-        let fresh = &self.beginning(h, &mut counts);
-        let from = match fresh {
-            Ok(from) => from,
-            Err(failure) => return Err(*failure),
-        };
+        let mut anew = None;
+        let from = self.beginning(h, &mut anew, &mut counts)?;
         let model = Model { rank_rises: from.rank_rises, first_order: true, ..self.model() };
-        match &self.method.step(&model, &from.instant, h, &mut counts) {
+        match &self.method.step(&model, from.instant, h, &mut counts) {
             Ok(next) => {
                 let phases = self.method.phases_after(&model, from.instant.t, h)?;
                 counts.steps = self.counts.steps + 1;
-                self.judge((from, next))?;
+                self.judge(&model, (from, next))?;
                 self.check_ends((from, next))?;
-                self.go_on((from, next), phases, counts);
+                let began = from.began();
+                self.go_on(began, next, phases, counts);
                 Ok(())
             }
             Err(failure) => Err(model.traced(*failure, from.instant.t, &from.instant.y)),
         }
     }
 
-    /// The instant at which a step of `h` (s) begins.
+    /// The instant at which a step of `h` (s) begins; `anew`: room for one that is solved anew.
     #[inline(always)]
-    fn beginning(&self, h: R, counts: &mut Counts) -> Result<Fresh<R, N, M, S::States>, Failure> {
+    fn beginning<'a>(
+        &'a self,
+        h: R,
+        anew: &'a mut Option<Fresh<R, N, M, S::States>>,
+        counts: &mut Counts,
+    ) -> Result<Start<'a, R, N, M, S::States>, Failure> {
         let t = self.now.t + h;
         if !R::constant(0.0).less(h) || !t.is_finite() || t == self.now.t {
             return Err(FailureKind::InvalidStep { step: h.to_f64() }.at(self.now.t.to_f64()));
         }
         self.method.check_step(h, self.now.t)?;
-        self.fresh(counts)
+        self.start_in(anew, counts)
     }
 
     /// Moves on to `until` (s) in `steps` equal steps; not at all where `until` is the present time.
@@ -203,7 +206,7 @@ where
     ) -> Result<AheadOf<S, R, N, M>, Failure> {
         let mut open = None;
         let ahead = self.trial(h, counts, without_open.then_some(&mut open));
-        match ahead.as_ref().map_or(Ok(()), |known| self.judge(known.ends())) {
+        match ahead.as_ref().map_or(Ok(()), |known| self.judge(&self.model(), known.ends())) {
             Ok(()) => ahead,
             Err(failure) => Err(failure),
         }
@@ -218,8 +221,9 @@ where
         mut counts: Counts,
         open: Option<&mut Option<LeftOut<S, R, N, M>>>,
     ) -> Result<AheadOf<S, R, N, M>, Failure> {
-        let fresh = self.beginning(h, &mut counts)?;
-        let (from, rank_rises) = (&fresh.instant, fresh.rank_rises);
+        let mut anew = None;
+        let start = self.beginning(h, &mut anew, &mut counts)?;
+        let Start { instant: from, rank_rises, .. } = start;
         let model = Model { rank_rises, first_order: true, ..self.model() };
         let mut parameters = &self.parameters;
         if const { !S::CONTACTS.is_empty() }
@@ -248,17 +252,23 @@ where
         };
         let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps = self.counts.steps + 1;
-        Ok(Ahead { from: fresh, next, phases, counts, modes })
+        Ok(Ahead { from: start.fresh(), next, phases, counts, modes })
     }
 
     /// Fails where a step does not end as one of a motion.
     #[inline(always)]
-    fn judge(&self, (fresh, next): Ends<'_, R, N, M, S::States>) -> Result<(), Failure> {
-        let from = &fresh.instant;
-        let model = Model { rank_rises: fresh.rank_rises, ..self.model() };
+    fn judge(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        (start, next): Ends<'_, R, N, M, S::States>,
+    ) -> Result<(), Failure> {
+        let from = start.instant;
         let judged = model.require_plausible((from, next.t - from.t), next);
         let judged = judged.and_then(|()| model.check(next.t, &next.y));
-        judged.map_err(|failure| model.traced(failure, from.t, &from.y))
+        judged.map_err(|failure| {
+            let model = Model { rank_rises: start.rank_rises, ..self.model() };
+            model.traced(failure, from.t, &from.y)
+        })
     }
 
     /// Fails where a step leaves a working range or a branch.
@@ -268,7 +278,7 @@ where
 
     /// [`check_ahead`](Self::check_ahead) of a step by its ends.
     fn check_ends(&self, (from, next): Ends<'_, R, N, M, S::States>) -> Result<(), Failure> {
-        let (model, from) = (self.model(), &from.instant);
+        let (model, from) = (self.model(), from.instant);
         let (start, end, unknown) = (from.t, next.t, [R::constant(0.0); N]);
         let at = |t| between((from, next), t);
         model.check_ranges(start, (start, end), at, (self.scrutiny.resolution, &unknown))?;
@@ -283,24 +293,23 @@ where
             self.take_modes(Some(parameters));
             self.reference = self.reference + *gained;
         }
-        self.go_on(ahead.ends(), ahead.phases, ahead.counts);
+        self.go_on(ahead.from.start().began(), &ahead.next, ahead.phases, ahead.counts);
     }
 
     /// [`go`](Self::go), of a step by its ends.
     fn go_on(
         &mut self,
-        (fresh, next): Ends<'_, R, N, M, S::States>,
+        Began { at, gained, rank_rises }: Began<R>,
+        next: &Instant<R, N, M, S::States>,
         phases: Option<S::Phases>,
         counts: Counts,
     ) {
-        let Fresh { instant: from, gained, rank_rises } = fresh;
-        let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
-        let passage = Passage::between(ends.0, ends.1);
-        self.passage = self.passage.or(passage);
-        self.rank_rises = *rank_rises;
+        self.rank_rises = rank_rises;
         self.take(next, phases, counts);
-        self.passed = passage.is_some();
-        self.reference = self.reference + *gained;
+        if let Some(passage) = Passage::between(at, (next.t, next.solved.margin)) {
+            (self.passage, self.passed) = (self.passage.or(Some(passage)), true);
+        }
+        self.reference = self.reference + gained;
     }
 
     /// The first time (s) within a step at which a contact closes or opens, unless that is its end.
@@ -365,7 +374,7 @@ where
             let Some(kink) = self.kink(&trial)? else { break };
             trial = self.trial_with_contacts(kink - self.now.t, trial.ahead.counts)?;
         }
-        self.judge(trial.ahead.ends()).map(|()| trial.ahead)
+        self.judge(&self.model(), trial.ahead.ends()).map(|()| trial.ahead)
     }
 
     /// A step of `h` (s) that does not feel the contacts that it runs into; one that does, where there is none without them.
@@ -388,7 +397,7 @@ where
         if self.kink(&trial)?.is_some() {
             return self.step_in_parts(trial.ahead.next.t);
         }
-        self.judge(trial.ahead.ends())?;
+        self.judge(&self.model(), trial.ahead.ends())?;
         self.check_ahead(&trial.ahead)?;
         self.go(&trial.ahead);
         Ok(())

@@ -127,6 +127,40 @@ struct Fresh<R, const N: usize, const M: usize, Z> {
     rank_rises: bool,
 }
 
+impl<R: Copy, const N: usize, const M: usize, Z> Fresh<R, N, M, Z> {
+    fn start(&self) -> Start<'_, R, N, M, Z> {
+        let Fresh { instant, gained, rank_rises } = self;
+        Start { instant, gained: *gained, rank_rises: *rank_rises }
+    }
+}
+
+/// [`Fresh`] where the instant is: it is long.
+#[derive(Clone, Copy)]
+struct Start<'a, R, const N: usize, const M: usize, Z> {
+    instant: &'a Instant<R, N, M, Z>,
+    gained: R,
+    rank_rises: bool,
+}
+
+impl<R: Copy, const N: usize, const M: usize, Z: Copy> Start<'_, R, N, M, Z> {
+    fn fresh(&self) -> Fresh<R, N, M, Z> {
+        Fresh { instant: *self.instant, gained: self.gained, rank_rises: self.rank_rises }
+    }
+
+    fn began(&self) -> Began<R> {
+        let Instant { t, solved, .. } = self.instant;
+        Began { at: (*t, solved.margin), gained: self.gained, rank_rises: self.rank_rises }
+    }
+}
+
+/// [`Fresh`] without its state.
+struct Began<R> {
+    /// Time (s) and margin.
+    at: (R, R),
+    gained: R,
+    rank_rises: bool,
+}
+
 impl<S, X, R, const N: usize, const M: usize> Simulation<S, X, R, N, M>
 where
     S: Dynamic<R, N, M>,
@@ -309,17 +343,26 @@ where
     }
 
     /// The instant, solved anew where parameters or inputs have changed.
-    #[inline]
     fn fresh(&self, counts: &mut Counts) -> Result<Fresh<R, N, M, S::States>, Failure> {
+        self.start_in(&mut None, counts).map(|start| start.fresh())
+    }
+
+    /// The present instant, or that in `anew` where parameters or inputs have changed.
+    #[inline]
+    fn start_in<'a>(
+        &'a self,
+        anew: &'a mut Option<Fresh<R, N, M, S::States>>,
+        counts: &mut Counts,
+    ) -> Result<Start<'a, R, N, M, S::States>, Failure> {
         if let Some(failure) = self.fault {
             return Err(failure);
         }
         if self.stale {
-            return self.solved_anew(counts);
+            return self.solved_anew(counts).map(|fresh| anew.insert(fresh).start());
         }
         let (Instant { t, y, .. }, passed) = (&self.now, self.passed);
         let rank_rises = self.rank_rises || passed && rank_rises(&self.model(), *t, y);
-        Ok(Fresh { instant: self.now, gained: R::constant(0.0), rank_rises })
+        Ok(Start { instant: &self.now, gained: R::constant(0.0), rank_rises })
     }
 
     /// The instant after parameters or inputs have changed.
@@ -363,7 +406,13 @@ where
         if const { S::HAS_SIGNALS || !S::PHASES.is_empty() } {
             self.parameters = self.model().with_modes_of(self.mechanism.parameters());
         }
-        self.now = *next;
+        // Part after part, each as long as a register or two. As a whole it goes through the memory once more, in pieces that wait for those
+        // in which it was written.
+        let Instant { t, y, solved, carried } = &mut self.now;
+        *t = next.t;
+        *y = next.y;
+        *solved = next.solved;
+        *carried = next.carried;
         self.counts = counts;
         self.stale = false;
         self.passed = false;
