@@ -188,7 +188,8 @@ fn parts_of_steps_find_the_largest_force_of_the_rod() {
     println!("largest force of the rod in {instants} parts: low by {low:.1e} of 1e-3");
     assert!((-1e-7..1e-3).contains(&low), "{low:e}");
     assert_eq!((last, instants), (PERIOD, 16 * run.counts().steps));
-    assert_eq!((run.q(), run.qd(), run.counts()), (alone.q(), alone.qd(), alone.counts()));
+    assert_eq!((run.q(), run.qd()), (alone.q(), alone.qd()));
+    assert_eq!(run.counts().evaluations, alone.counts().evaluations);
     // A run that does not move is shown once.
     let mut seen = 0;
     run.watch_steps(PERIOD, 16, |_| seen += 1).unwrap();
