@@ -170,6 +170,32 @@ fn shown<I: Embedded>(
     (errors, run)
 }
 
+/// The force of the rod is largest at the lowest point, 3 m g: parts of steps find it, and the run keeps its bits.
+#[test]
+fn parts_of_steps_find_the_largest_force_of_the_rod() {
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let start = released(method).with_tolerance(Tolerance::new(1e-9));
+    let (mut run, mut alone) = (start, start);
+    let (mut most, mut instants, mut last) = (0.0_f64, 0_u64, 0.0);
+    run.watch_steps(PERIOD, 16, |run| {
+        assert!(last < run.t());
+        (most, instants, last) = (most.max(run.lambda()[0].abs()), instants + 1, run.t());
+    })
+    .unwrap();
+    alone.advance_to(PERIOD).unwrap();
+    // The row x² + y² = 1 has twice the rod's direction for a gradient.
+    let low = 1.0 - 2.0 * most / (3.0 * 9.81);
+    println!("largest force of the rod in {instants} parts: low by {low:.1e} of 1e-3");
+    assert!((-1e-7..1e-3).contains(&low), "{low:e}");
+    assert_eq!((last, instants), (PERIOD, 16 * run.counts().steps));
+    assert_eq!((run.q(), run.qd()), (alone.q(), alone.qd()));
+    assert_eq!(run.counts().evaluations, alone.counts().evaluations);
+    // A run that does not move is shown once.
+    let mut seen = 0;
+    run.watch_steps(PERIOD, 16, |_| seen += 1).unwrap();
+    assert_eq!(seen, 1);
+}
+
 #[test]
 fn instants_between_steps_are_as_right_as_the_run() {
     /// Of the largest error of the run: what the instants looked at miss of it.

@@ -16,20 +16,21 @@ pub fn turn(cam: &Cam, count: usize) -> Vec<(f64, Place<f64>)> {
     (0..count).map(|k| (place(k), cam.place(place(k)))).collect()
 }
 
-/// One line a place: cam angle, lift with derivatives, contour, pitch curve, radii, pressure angle, sliding; the angle of a rocker from
-/// its place at lift 0.
+/// One line a place: cam angle, lift with derivatives, contour, pitch curve, radii, pressure angle, sliding, polar angle and radius of
+/// the pitch curve; the angle of a rocker from its place at lift 0. A flat face has its contour for a pitch curve.
 pub fn csv(places: &Places, follower: &Follower) -> String {
     let unit = if follower.lifts_by_angle() { "rad" } else { "m" };
     let is_rocker = matches!(follower, Follower::Rocker { .. });
     let mut text = format!(
         "theta (rad),lift ({unit}),velocity ({unit}/rad),acceleration ({unit}/rad^2),jerk ({unit}/rad^3),contour x (m),contour y (m),\
          pitch x (m),pitch y (m),polar radius (m),polar angle (rad),d2r (m/rad^2),radius of curvature (m),pressure angle (rad),\
-         sliding (m/rad){}\n",
+         sliding (m/rad),pitch angle (rad),pitch radius (m){}\n",
         if is_rocker { ",rocker (rad)" } else { "" }
     );
     for (theta, p) in places {
-        let numbers =
-            [&[*theta][..], &p.lift, &p.contour, &p.pitch, &p.polar, &[p.radius, p.pressure, p.sliding]];
+        let pitch = [p.pitch[1].atan2(p.pitch[0]), p.pitch[0].hypot(p.pitch[1])];
+        let more = [p.radius, p.pressure, p.sliding];
+        let numbers = [&[*theta][..], &p.lift, &p.contour, &p.pitch, &p.polar, &more, &pitch];
         let rocker = is_rocker.then_some(p.angle[0]);
         let cells: Vec<String> = numbers.concat().iter().chain(&rocker).map(|x| format!("{x:?}")).collect();
         let _ = writeln!(text, "{}", cells.join(","));
@@ -132,6 +133,14 @@ mod tests {
         assert_eq!(text.lines().count(), 91);
         let columns = text.lines().next().expect("a header").split(',').count();
         assert!(text.lines().all(|line| line.split(',').count() == columns));
+        // The polar radius of the pitch curve: the base circle and the roller at lift 0.
+        let last = |line: &str| line.rsplit(',').next().and_then(|cell| cell.parse::<f64>().ok());
+        let radii: Vec<f64> = text.lines().filter_map(last).collect();
+        assert_eq!(radii.len(), 90);
+        assert!(
+            (radii[0] - 0.026).abs() < 1e-15
+                && radii.iter().all(|r| (0.026 - 1e-9..0.032 + 1e-9).contains(r))
+        );
         let drawing = dxf(&places);
         assert_eq!(drawing.matches("VERTEX").count(), 90);
         // Pairs of code and value.

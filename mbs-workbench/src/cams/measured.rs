@@ -45,6 +45,10 @@ const FINEST: f64 = 1e-7;
 /// More outliers than this share of the points are no outliers.
 const MOST_OUTLIERS: f64 = 0.05;
 
+/// Points nearer to each other than this (rad), with equal radii (as a share), are one: angles may have six decimals.
+const SAME_ANGLE: f64 = 1e-6;
+const SAME_RADIUS: f64 = 1e-12;
+
 /// Points on each side of one that tell the distances about it.
 const NEIGHBOURS: usize = 8;
 
@@ -65,7 +69,7 @@ const HIDDEN: f64 = 0.5;
 const PLACES: usize = 720;
 
 impl Profile {
-    /// From polar angles (rad), in any order, and radii (m).
+    /// From polar angles (rad), in any order, and radii (m). A point that stands twice, as at both ends of a turn, is one.
     ///
     /// # Errors
     /// [`CamError::Value`] of numbers that are not finite, radii that are not positive, angles that occur twice, fewer than 24 points.
@@ -80,15 +84,29 @@ impl Profile {
                 odd + 1
             ));
         }
+        sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let is_same = |a: &[f64; 2], b: &[f64; 2], angle: f64| {
+            angle <= SAME_ANGLE && (a[1] - b[1]).abs() <= SAME_RADIUS * a[1].max(b[1])
+        };
+        sorted.dedup_by(|next, known| is_same(next, known, next[0] - known[0]));
+        if let [first, .., last] = sorted.as_slice()
+            && is_same(first, last, first[0] + TAU - last[0])
+        {
+            sorted.pop();
+        }
         if sorted.len() < 24 {
             return fault(format!(
                 "{} points are too few; 24 are the least\nhelp: measure more points over the turn",
                 sorted.len()
             ));
         }
-        sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
         if let Some(pair) = sorted.windows(2).find(|pair| pair[0][0] == pair[1][0]) {
-            return fault(format!("the angle of {:.6} deg occurs twice", pair[0][0].to_degrees()));
+            return fault(format!(
+                "the angle of {:.6} deg occurs twice, with radii of {:.6} and {:.6} mm\nhelp: keep one of both points, or their mean",
+                pair[0][0].to_degrees(),
+                1e3 * pair[0][1],
+                1e3 * pair[1][1]
+            ));
         }
         let (angles, radii) = sorted.into_iter().map(|[angle, r]| (angle, r)).unzip();
         Ok(Profile { angles, radii })

@@ -64,7 +64,7 @@ fn of_part(part: &Part<'_>, limits: &Limits) -> Value {
         "pressure": column(&|p| p.pressure), "sliding": column(&|p| p.sliding), "hertz": hertz,
         "verdicts": verdicts.iter().map(|one| json!({
             "name": one.limit.name(), "value": finite(one.value), "bound": one.limit.bound(), "angle": one.angle, "kept": one.kept,
-            "least": one.limit.is_least(), "strict": one.limit.is_strict(),
+            "least": one.limit.is_least(),
         })).collect::<Vec<_>>(),
     })
 }

@@ -55,7 +55,11 @@ impl<const ORDER: usize> Pitch<ORDER> {
             return fault("pitch curve", "a flat face has none".to_string());
         }
         if cam.lift.order() < ORDER {
-            let why = format!("{} continuous derivatives, {ORDER} are needed", cam.lift.order());
+            let why = format!(
+                "{} continuous derivatives, {ORDER} are needed\nhelp: three and more have `4567`, `constant-velocity`, `harmonics:…`, a table of the lift, \
+                 `even:…` of four exponents or more, `bspline:…` with three at knots and ends; `--polydyne` takes two away",
+                cam.lift.order()
+            );
             return fault("law", why);
         }
         // The rotation carries the profile the other way.

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use mbs_runtime::driver::SMOOTH;
 use serde_json::{Value, json};
@@ -105,12 +105,9 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     if arguments.measured {
         return recover(arguments, &directory, out);
     }
-    let GivenLaw { lift, source, table } = arguments.law()?;
+    let GivenLaw { lift, source, table, name } = arguments.law()?;
     let all = cams(arguments, &lift)?;
     let limits = arguments.limits();
-    let name = PathBuf::from(&arguments.law)
-        .file_name()
-        .map_or_else(|| "cam".into(), |n| n.to_string_lossy().into_owned());
     let places: Vec<_> = all.iter().map(|one| turn(&one.cam, 720)).collect();
     if let Some(constant) = &arguments.rust {
         let mut code = String::new();
@@ -122,7 +119,10 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
         out.put("code", &code);
         return Ok(out.write_all(code.as_bytes())?);
     }
-    let origin = Origin::of_table(&name, &source);
+    let origin = match table {
+        Some(_) => Origin::of_table(&name, &source),
+        None => Origin::of_law(&name, &source),
+    };
     let sentences: Vec<String> = all.iter().map(|one| sentence(arguments, one)).collect();
     let of_table = table.iter().map(|table| format!("Lift law: {table}."));
     let sentence = sentences.iter().cloned().chain(of_table).collect::<Vec<_>>().join(" ");

@@ -39,7 +39,7 @@ pub struct LawOptions {
     #[arg(long, value_name = "C", value_parser = positive_number, allow_hyphen_values = true)]
     polydyne: Option<f64>,
     /// Units of the columns of a table [default: those in the header]
-    #[arg(long, value_name = "\"deg, mm\"", value_parser = Columns::parse)]
+    #[arg(long, value_name = "\"deg, mm\"", value_parser = Columns::parse, allow_hyphen_values = true)]
     pub columns: Option<Columns>,
     /// Knots of a least-squares fit to a table [default: through every point]
     #[arg(long, value_name = "N", value_parser = super::positive)]
@@ -53,12 +53,23 @@ pub struct GivenLaw {
     pub source: Vec<u8>,
     /// File, number of points and of knots of a table; none of a law in words.
     pub table: Option<String>,
+    /// The law in words, or the name of its file without folders.
+    pub name: String,
+}
+
+/// The name of a file without folders.
+fn file_name(path: &str) -> String {
+    Path::new(path).file_name().map_or_else(|| path.into(), |name| name.to_string_lossy()).into_owned()
 }
 
 /// A table by the name of its file, without folders, and the number of its points.
 pub fn named_table(path: &str, points: usize) -> String {
-    let name = Path::new(path).file_name().map_or_else(|| path.into(), |name| name.to_string_lossy());
-    format!("table {name}, {points} points")
+    format!("table {}, {points} points", file_name(path))
+}
+
+/// `true` if a B-spline is written itself, not the file that has it.
+fn is_bspline_itself(text: &str) -> bool {
+    text.contains([';', ' '])
 }
 
 /// A law with its options in one text.
@@ -238,7 +249,12 @@ impl LawOptions {
                 lift.with_ramps(height.map_err(wrong)?, positive_angle(duration).map_err(wrong)?)?
             }
         };
-        Ok(GivenLaw { lift: self.corrected(lift)?, source: word.as_bytes().to_vec(), table: None })
+        // A law is no path, though it may have a `/` in its units.
+        let name = match word.strip_prefix("bspline:").filter(|text| !is_bspline_itself(text)) {
+            Some(file) => format!("bspline:{}", file_name(file)),
+            None => word.to_string(),
+        };
+        Ok(GivenLaw { lift: self.corrected(lift)?, source: word.as_bytes().to_vec(), table: None, name })
     }
 
     /// Refuses options of another law: none is left aside silently.
@@ -305,7 +321,7 @@ impl LawOptions {
         if self.lift.is_some() {
             return Err(usage("the constraints of a B-spline have its lift\nhelp: leave out `--lift`"));
         }
-        if text.contains([';', ' ']) {
+        if is_bspline_itself(text) {
             return Ok(text.to_string());
         }
         let named = |why: String| CommandError::Failed(format!("{text}: {why}"));
@@ -356,6 +372,7 @@ impl LawOptions {
         })?;
         let spline = Spline::fit(&points.x, &points.y, SplineKind::PeriodicQuintic(period), self.knots);
         let spline = spline.map_err(|error| named(explained(error, &points).to_string()))?;
-        Ok(GivenLaw { lift: self.corrected(Lift::table(spline)?)?, source: bytes, table: Some(table) })
+        let name = file_name(word);
+        Ok(GivenLaw { lift: self.corrected(Lift::table(spline)?)?, source: bytes, table: Some(table), name })
     }
 }

@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(required_unless_present = "sample")]
     file: Option<PathBuf>,
     /// Units of the columns, `-` for one that is not read [default: those in the header]
-    #[arg(long, value_name = "\"deg, mm\"", value_parser = Columns::parse)]
+    #[arg(long, value_name = "\"deg, mm\"", value_parser = Columns::parse, allow_hyphen_values = true)]
     columns: Option<Columns>,
     /// The table repeats after a turn: a periodic quintic spline instead of a cubic one
     #[arg(long)]

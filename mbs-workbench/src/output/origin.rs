@@ -5,12 +5,15 @@ use crate::hash::{hash, hash_of_text};
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Text or table that a file was made from.
+/// Kind of a law in words.
+const LAW: &str = "law";
+
+/// Text, table or law that a file was made from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     /// Its name on the command line.
     pub name: String,
-    /// Its kind: `text` or `table`.
+    /// Its kind: `text`, `table` or `law`.
     kind: &'static str,
     /// Hash of its tokens, of a table of its bytes.
     pub hash: String,
@@ -27,10 +30,17 @@ impl Origin {
         Origin { name: name.to_string(), kind: "table", hash: hash(&[bytes]) }
     }
 
+    /// That of a law in words, which is no path.
+    pub fn of_law(words: &str, bytes: &[u8]) -> Self {
+        Origin { name: words.to_string(), kind: LAW, hash: hash(&[bytes]) }
+    }
+
     /// `mbs 0.1.0, four_bar, text 0123456789abcdef`; of a file its name without folders.
     pub fn line(&self) -> String {
         let Origin { name, kind, hash } = self;
-        let name = name.rsplit(['/', '\\']).next().unwrap_or(name).replace(['\n', '\r'], " ");
+        let whole = (*kind == LAW).then_some(name.as_str());
+        let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+        let name = whole.unwrap_or(last).replace(['\n', '\r'], " ");
         format!("mbs {VERSION}, {name}, {kind} {hash}")
     }
 
@@ -70,6 +80,7 @@ mod tests {
     #[test]
     fn every_kind_of_file_names_its_origin() {
         assert!(Origin::of_text("../b/a.rs:A", "").line().contains(", a.rs:A, text "));
+        assert!(Origin::of_law("bspline:s = 1mm/rad", b"").line().contains(", bspline:s = 1mm/rad, law "));
         let origin = Origin::of_text("a<b", "mechanism A;");
         let line = origin.line();
         assert!(line.starts_with(&format!("mbs {VERSION}, a<b, text ")) && line.len() > 30, "{line}");

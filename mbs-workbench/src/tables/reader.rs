@@ -63,11 +63,25 @@ impl Columns {
         }
     }
 
-    /// From a header like `cam (deg), lift [mm]`.
-    fn of_header(head: &Head) -> Option<Self> {
-        let read = head.with_units().into_iter().map(|(index, _, unit)| (index, unit));
-        let [x, y] = <[_; 2]>::try_from(read.collect::<Vec<_>>()).ok()?;
-        Some(Columns { x, y })
+    /// From a header like `cam (deg), lift [mm]`, which may go on with derivatives, as `velocity (mm/rad)`.
+    fn of_header(head: &Head) -> Result<Self, ReadFault> {
+        let fault = |message: String, cure: &str| Err(ReadFault::new(head.line, 0, message, cure));
+        let read: Vec<(usize, Unit)> =
+            head.with_units().into_iter().map(|(index, _, unit)| (index, unit)).collect();
+        let [x, y, rest @ ..] = read.as_slice() else {
+            return fault(
+                UNITS_UNKNOWN.to_string(),
+                "say `--columns \"deg, mm\"`, or write a header `cam (deg), lift (mm)`",
+            );
+        };
+        let mut derivatives = (1..).map(|order| y.1.derivative(&x.1, order));
+        if rest.iter().any(|(_, unit)| Some(&unit.coherent) != derivatives.next().as_ref()) {
+            return fault(
+                format!("the header has {} columns with units, and two are read", read.len()),
+                "name the units of both, a `-` for each column before them, as `--columns \"deg, -, mm\"`",
+            );
+        }
+        Ok(Columns { x: x.clone(), y: y.clone() })
     }
 }
 
@@ -126,6 +140,8 @@ pub(crate) const UNITS_UNKNOWN: &str = "the units of the columns are not known";
 
 /// Reads a file; `columns` where the header has no units.
 ///
+/// A header with two columns that have units, or with derivatives of the second one behind them, tells which are read.
+///
 /// Cells are separated by the first of semicolon, tab and comma, in this order, that the first line has. Unless it is the comma,
 /// numbers may have decimal commas. Lines that begin with `#` are comments.
 ///
@@ -137,14 +153,7 @@ pub fn read(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, ReadFault
 
 fn read_points(bytes: &[u8], columns: Option<&Columns>, is_ordered: bool) -> Result<Points, ReadFault> {
     let choose = |head: &Head| {
-        let Columns { x, y } = columns.cloned().or_else(|| Columns::of_header(head)).ok_or_else(|| {
-            ReadFault::new(
-                head.line,
-                0,
-                UNITS_UNKNOWN.to_string(),
-                "say `--columns \"deg, mm\"`, or write a header `cam (deg), lift (mm)`",
-            )
-        })?;
+        let Columns { x, y } = columns.cloned().map_or_else(|| Columns::of_header(head), Ok)?;
         Ok(vec![x, y])
     };
     let table = read_rows(bytes, choose, is_ordered)?;
@@ -317,6 +326,14 @@ mod tests {
         let found = read(b"no;cam angle [deg];lift (mm)\n1;180;2\n2;360;3\n", None).expect("units are known");
         assert_eq!(found.x, [core::f64::consts::PI, core::f64::consts::TAU]);
         assert_eq!((found.y, found.names), (vec![2e-3, 3e-3], ["cam angle", "lift"].map(String::from)));
+        // Derivatives of the second column may follow it.
+        for text in [
+            "a (deg),s (mm),v (mm/rad),a (mm/rad^2)\n0,2,1,1\n1,3,1,1\n",
+            "a (deg),s (deg),v (deg/rad)\n0,2,1\n1,3,1\n",
+        ] {
+            let found = read(text.as_bytes(), None).expect(text);
+            assert_eq!((found.columns.x.0, found.columns.y.0, found.x.len()), (0, 1, 2));
+        }
         let columns = Columns::parse("-, s, -, m/s").expect("columns");
         assert_eq!((columns.x.0, columns.y.0), (1, 3));
         let found = read(b"9,1,9,2\n9,2,9,4\n", Some(&columns)).expect("numbers");
@@ -342,6 +359,8 @@ mod tests {
             text,
             "line 3, column 1: 1 is not above the line before\nhelp: sort the lines and remove repeated ones"
         );
+        let many = read(b"a (deg),x (mm),y (mm)\n1,2,3\n", None).expect_err("which two").to_string();
+        assert!(many.contains("3 columns with units") && many.contains("--columns"), "{many}");
         let unknown = read(b"a,b\n1,2\n", None).expect_err("no units");
         assert!(unknown.cure.contains("--columns"), "{unknown}");
         let wide = read(&[0xFF, 0xFE, b'1', 0], None).expect_err("UTF-16");

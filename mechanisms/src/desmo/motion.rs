@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
 use mbs_runtime::{Dynamic, Energy, Failure, Stepper};
+use mbs_workbench::cams::lift::Lift;
 
 use super::design::{Curve, Design};
 use super::{DesmoFriction, DesmoHeld, DesmoOrdinary};
@@ -19,29 +20,71 @@ pub type Ordinary = DesmoOrdinary<Curve>;
 pub const FORCES: [&str; 5] =
     ["opener on its cam", "opener on the valve", "seat", "closer on its cam", "fork on the valve"];
 
+/// Motion of the valve with permanent contact over the cam angle.
+#[derive(Clone, Debug, Default)]
+pub struct Permanent {
+    /// Cam angle from −180 to 180 (deg).
+    pub angle: Vec<f64>,
+    /// Lift (m), velocity (m/rad), acceleration (m/rad²).
+    pub columns: [Vec<f64>; 3],
+    /// Distance of the closer's fork from the place where the opener holds the valve (m).
+    pub apart: Vec<f64>,
+}
+
+impl Permanent {
+    /// At `places` cam angles of a turn, shifted by the share `shift` of their distance.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::assemble`] and [`Stepper::advance_to`].
+    pub fn of(design: &Design, pitch: &[Curve; 2], places: u32, shift: f64) -> Result<Self, Failure> {
+        let mut mechanism = design.moved_by(pitch.clone());
+        mechanism.speed = 1.0;
+        let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0)?;
+        let mut found = Permanent::default();
+        for step in 0..places {
+            let t = TAU * (f64::from(step) + shift) / f64::from(places);
+            stepper.advance_to(t)?;
+            let outputs = stepper.outputs();
+            let [apart, lift] = [outputs.as_ref()[0], outputs.as_ref()[1]];
+            found.angle.push((t - PI).to_degrees());
+            found.apart.push(apart.value);
+            let values = [Some(lift.value), lift.rate, lift.acceleration];
+            found
+                .columns
+                .iter_mut()
+                .zip(values)
+                .for_each(|(column, value)| column.push(value.unwrap_or(f64::NAN)));
+        }
+        Ok(found)
+    }
+
+    /// The law and its derivatives at the same cam angles.
+    pub fn law(&self, law: &Lift) -> [Vec<f64>; 3] {
+        let jets: Vec<[f64; 4]> = self.angle.iter().map(|angle| law.jet(angle.to_radians())).collect();
+        [0, 1, 2].map(|order| jets.iter().map(|jet| jet[order]).collect())
+    }
+}
+
 /// Largest differences of lift, velocity and acceleration from the law over a turn (m over rad) with permanent contact. The last
 /// number is the range of the distance of both rockers (m). Compared are 720 places, shifted by this share of their distance.
 ///
 /// # Errors
-/// Those of [`Stepper::assemble`] and [`Stepper::advance_to`].
+/// Those of [`Permanent::of`].
 pub fn against_law(design: &Design, pitch: &[Curve; 2], shift: f64) -> Result<[f64; 4], Failure> {
-    const PLACES: u32 = 720;
-    let mut mechanism = design.moved_by(pitch.clone());
-    mechanism.speed = 1.0;
-    let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0)?;
-    let (mut errors, mut least, mut most) = ([0.0_f64; 3], f64::INFINITY, f64::NEG_INFINITY);
-    for step in 0..PLACES {
-        let t = TAU * (f64::from(step) + shift) / f64::from(PLACES);
-        stepper.advance_to(t)?;
-        let outputs = stepper.outputs();
-        let [apart, lift] = [outputs.as_ref()[0], outputs.as_ref()[1]];
-        (least, most) = (least.min(apart.value), most.max(apart.value));
-        let found = [Some(lift.value), lift.rate, lift.acceleration];
-        for (error, (found, law)) in errors.iter_mut().zip(found.into_iter().zip(design.law.jet(t - PI))) {
-            *error = error.max((found.unwrap_or(f64::NAN) - law).abs());
-        }
-    }
-    Ok([errors[0], errors[1], errors[2], most - least])
+    let found = Permanent::of(design, pitch, 720, shift)?;
+    let law = found.law(&design.law);
+    let [lift, velocity, acceleration] = [0, 1, 2].map(|order| {
+        let pairs = found.columns[order].iter().zip(&law[order]);
+        // A derivative that is not known is no small error.
+        pairs
+            .map(|(found, law)| (found - law).abs())
+            .fold(0.0, |most: f64, error| if error.is_nan() { f64::INFINITY } else { most.max(error) })
+    });
+    let (least, most) =
+        found.apart.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), apart| {
+            (least.min(*apart), most.max(*apart))
+        });
+    Ok([lift, velocity, acceleration, most - least])
 }
 
 /// Contradiction of both cams over the cam angle: the way of the fork less the one of the valve, with permanent contact.
@@ -81,7 +124,18 @@ impl Misfit {
     }
 }
 
+/// Parts of a step at which largest values are looked for; a step is a fraction of an impact.
+const PARTS: u32 = 8;
+
+/// The one with the larger magnitude.
+fn larger(a: f64, b: f64) -> f64 {
+    if b.abs() > a.abs() { b } else { a }
+}
+
 /// A turn of the cam, one value for each cam angle.
+///
+/// Accelerations, forces and torques are those of largest magnitude from one cam angle to the next. These are of all steps of the
+/// motion, for an impact is shorter than the distance of two cam angles.
 #[derive(Clone, Debug, Default)]
 pub struct Turn {
     /// Cam angle from −180 to 180 (deg).
@@ -92,15 +146,17 @@ pub struct Turn {
     pub acceleration: Vec<f64>,
     /// Contact forces (N); those of a closer that is not there are 0.
     pub forces: [Vec<f64>; 5],
+    /// `true` of each contact that is closed at the cam angle itself.
+    pub closed: [Vec<bool>; 5],
     /// Torque that the cam needs (N m).
     pub torque: Vec<f64>,
     /// Work of the cam since the start (J).
     pub work: f64,
     /// Largest part of the work that energy, contacts and guide do not account for.
     pub defect: f64,
-    /// Right-hand sides of all turns, and their time.
+    /// Right-hand sides of all turns.
     pub evaluations: u64,
-    /// Time of all turns.
+    /// Time of all turns, without that of largest values.
     pub time: Duration,
 }
 
@@ -144,11 +200,15 @@ impl Turn {
             run.advance_to(turn * f64::from(turns - 1))?;
         }
         let mut found = Turn::default();
-        let mut defect = 0.0_f64;
-        run.watch(turn * f64::from(turns), samples, |run| {
+        let (mut defect, mut within) = (0.0_f64, run.clone());
+        let (from, until) = (run.t(), turn * f64::from(turns));
+        run.watch(until, samples, |run| {
             let (outputs, loads) = (run.outputs(), run.loads());
             let forces = outputs.as_ref().iter().map(|output| output.value).chain(core::iter::repeat(0.0));
-            found.forces.iter_mut().zip(forces).for_each(|(all, force)| all.push(force));
+            for ((all, closed), force) in found.forces.iter_mut().zip(&mut found.closed).zip(forces) {
+                all.push(force);
+                closed.push(force > 0.0);
+            }
             // Over the place in the turn: an uneven cam has another angle.
             let place =
                 f64::from(u32::try_from(found.angle.len() + 1).unwrap_or(samples)) / f64::from(samples);
@@ -162,9 +222,19 @@ impl Turn {
                 defect = defect.max(rest.abs());
             }
         })?;
+        found.time = started.elapsed();
+        within.watch_steps(until, PARTS, |run| {
+            let place = (run.t() - from) / (until - from) * f64::from(samples);
+            let Some(k) = (place.ceil() as usize).min(found.angle.len()).checked_sub(1) else { return };
+            let (outputs, loads) = (run.outputs(), run.loads());
+            for (all, force) in found.forces.iter_mut().zip(outputs.as_ref()) {
+                all[k] = all[k].max(force.value);
+            }
+            found.acceleration[k] = larger(found.acceleration[k], run.qdd()[2]);
+            found.torque[k] = larger(found.torque[k], loads.as_ref()[0]);
+        })?;
         found.defect = defect / found.work.abs().max(f64::MIN_POSITIVE);
         found.evaluations = run.counts().evaluations;
-        found.time = started.elapsed();
         Ok(found)
     }
 
@@ -175,7 +245,7 @@ impl Turn {
 
     /// Intervals of the cam angle (deg) in which a contact is closed.
     pub fn touches(&self, force: usize) -> Vec<[f64; 2]> {
-        self.spans(|k| self.forces[force][k] > 0.0)
+        self.spans(|k| self.closed[force][k])
     }
 
     /// Intervals of the cam angle (deg) at which `holds` holds.
@@ -203,7 +273,7 @@ impl Turn {
 
     /// Intervals of the cam angle (deg) in which neither rocker nor the seat touches the valve.
     pub fn flights(&self) -> Vec<[f64; 2]> {
-        self.spans(|k| [1, 2, 4].iter().all(|force| self.forces[*force][k] <= 0.0))
+        self.spans(|k| [1, 2, 4].iter().all(|force| !self.closed[*force][k]))
     }
 
     /// Part of the turn in which nothing touches the valve.

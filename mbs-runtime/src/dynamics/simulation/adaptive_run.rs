@@ -62,6 +62,37 @@ struct Progress<R, P, G> {
     accepted: u32,
 }
 
+/// The next of `samples` instants at equal distances from `from` to `until`, if it is within the step.
+fn grid<R: Real>(from: R, until: R, samples: u32) -> impl FnMut([R; 2]) -> Option<R> {
+    let (mut index, count) = (1, R::constant(f64::from(samples)));
+    move |[_, end]| {
+        if index > samples {
+            return None;
+        }
+        let share = R::constant(f64::from(index)) / count;
+        let t = if index == samples { until } else { from + (until - from) * share };
+        if end < t {
+            return None;
+        }
+        index += 1;
+        Some(t)
+    }
+}
+
+/// The end of the next of `parts` equal parts of a step, none after the last one.
+fn parts_of_steps<R: Real>(parts: u32) -> impl FnMut([R; 2]) -> Option<R> {
+    let (mut index, count) = (0, R::constant(f64::from(parts)));
+    move |[start, end]| {
+        if index >= parts {
+            index = 0;
+            return None;
+        }
+        index += 1;
+        let share = R::constant(f64::from(index)) / count;
+        Some(if index == parts { end } else { start + (end - start) * share })
+    }
+}
+
 impl<S, I, F, R, const N: usize, const M: usize> Simulation<S, Explicit<I, F>, R, N, M>
 where
     S: Dynamic<R, N, M>,
@@ -134,7 +165,7 @@ where
         samples: u32,
         mut see: impl FnMut(&Instant<R, N, M, S::States>),
     ) -> Result<(), Failure> {
-        self.sampled(until, samples, |instant, _| see(instant))
+        self.sampled(until, (samples, grid(self.now.t, until, samples)), |instant, _| see(instant))
     }
 
     /// As [`sample`](Self::sample), and shows the whole simulation as it is at each of these instants: its outputs, loads and
@@ -142,7 +173,33 @@ where
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
-    pub fn watch(&mut self, until: R, samples: u32, mut see: impl FnMut(&Self)) -> Result<(), Failure>
+    pub fn watch(&mut self, until: R, samples: u32, see: impl FnMut(&Self)) -> Result<(), Failure>
+    where
+        F: Clone,
+    {
+        let instants = (samples, grid(self.now.t, until, samples));
+        self.watched(until, instants, see)
+    }
+
+    /// As [`watch`](Self::watch) at `parts` equal parts of each step, its end included: steps are short where forces change fast, so
+    /// largest values are seen that a grid of instants misses. Shown once where `until` is the present time.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn watch_steps(&mut self, until: R, parts: u32, see: impl FnMut(&Self)) -> Result<(), Failure>
+    where
+        F: Clone,
+    {
+        self.watched(until, (1, parts_of_steps(parts)), see)
+    }
+
+    /// Shows the whole simulation at `instants`, as [`sampled`](Self::sampled) has them.
+    fn watched(
+        &mut self,
+        until: R,
+        instants: (u32, impl FnMut([R; 2]) -> Option<R>),
+        mut see: impl FnMut(&Self),
+    ) -> Result<(), Failure>
     where
         F: Clone,
     {
@@ -152,7 +209,7 @@ where
             shown.reference = shown.reference + gained;
         }
         let (steps, reference) = (self.adaptive.accepted, shown.reference);
-        self.sampled(until, samples, |instant, run| {
+        self.sampled(until, instants, |instant, run| {
             let mut counts = run.counts;
             counts.steps += u64::from(run.accepted.wrapping_sub(steps));
             shown.take_modes(run.parameters.as_ref());
@@ -163,24 +220,24 @@ where
         })
     }
 
-    /// Shows the instants at `samples` equal distances to `until` (s), with the results of the run.
+    /// Shows instants on the way to `until` (s), with the results of the run. The second of `instants` has the next one within the step
+    /// between two times, or none; the first is how often a run that does not move is shown.
     ///
     /// The samples do not change the run: rates between its steps are kept apart from it.
     fn sampled(
         &mut self,
         until: R,
-        samples: u32,
+        (standing, mut next): (u32, impl FnMut([R; 2]) -> Option<R>),
         mut see: impl FnMut(&Instant<R, N, M, S::States>, &Progress<R, S::Phases, S::Parameters>),
     ) -> Result<(), Failure> {
-        let (from, count) = (self.now.t, R::constant(f64::from(samples)));
-        let (mut index, mut accepted_steps) = (1, self.adaptive.accepted);
+        let mut accepted_steps = self.adaptive.accepted;
         let method = self.method.integrator;
-        if until == from {
+        if until == self.now.t {
             self.stand()?;
             let (phases, counts) = (self.mechanism.phases(), self.counts);
             let (gained, accepted) = (R::constant(0.0), accepted_steps);
             let progress = Progress { parameters: None, phases, counts, gained, passage: None, accepted };
-            (0..samples).for_each(|_| see(&self.now, &progress));
+            (0..standing).for_each(|_| see(&self.now, &progress));
             return Ok(());
         }
         self.advance(
@@ -190,12 +247,7 @@ where
             |equations, accepted| {
                 let mut polynomial = None;
                 accepted_steps = accepted_steps.wrapping_add(1);
-                while index <= samples {
-                    let share = R::constant(f64::from(index)) / count;
-                    let t = if index == samples { until } else { from + (until - from) * share };
-                    if accepted.end.t < t {
-                        break;
-                    }
+                while let Some(t) = next([accepted.start.t, accepted.end.t]) {
                     let (instant, phases) = equations.apart(|equations| {
                         let known = *polynomial.get_or_insert_with(|| accepted.polynomial(equations).ok());
                         let between = || known.map_or_else(|| accepted.cubic(t), |known| known.at(t));
@@ -208,7 +260,6 @@ where
                     let (counts, passage, gained) = (equations.counts, equations.passage, equations.gained);
                     let (parameters, accepted) = (equations.parameters(), accepted_steps);
                     see(&instant, &Progress { parameters, phases, counts, gained, passage, accepted });
-                    index += 1;
                 }
                 Ok(())
             },

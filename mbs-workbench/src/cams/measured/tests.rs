@@ -192,3 +192,24 @@ fn a_gap_is_refused_with_its_place() {
     );
     assert!(Profile::polar(&[[0.0, 1.0]; 30]).is_err() && Profile::polar(&[[0.0, 1.0]]).is_err());
 }
+
+#[test]
+fn a_point_at_both_ends_of_a_turn_is_one() {
+    let cam = cam(followers()[1], Direction::CounterClockwise);
+    let polar = |[x, y]: &[f64; 2]| [y.atan2(*x).rem_euclid(TAU), x.hypot(*y)];
+    let mut open: Vec<[f64; 2]> = measured(&cam, 360, 0.0, |_| false).iter().map(polar).collect();
+    open.push([0.0, 0.03]);
+    let points = Profile::polar(&open).expect("points");
+    // 360° as a file writes it, in degrees or with six decimals in rad.
+    for end in [360_f64.to_radians(), 1e-6 * (1e6 * TAU).floor()] {
+        let closed = [open.as_slice(), &[[end, 0.03]]].concat();
+        assert_eq!(Profile::polar(&closed).expect("points"), points);
+    }
+    let torn = [open.as_slice(), &[[TAU, 0.0301]]].concat();
+    let refused = Profile::polar(&torn).expect_err("two radii").to_string();
+    assert!(
+        refused.contains("0.000000 deg occurs twice, with radii of 30.0")
+            && refused.contains("help: keep one"),
+        "{refused}"
+    );
+}

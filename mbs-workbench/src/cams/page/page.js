@@ -112,7 +112,7 @@ for (const cam of CAMS) {
   row([isPair ? `${cam.name}: limit` : "limit", "bound", "value", "at", ""], "th");
   for (const one of cam.verdicts) {
     const [factor, unit] = UNIT[one.name];
-    const bound = `${one.least ? (one.strict ? ">" : "≥") : "≤"} ${short(one.bound * factor)}${unit === "°" ? "" : " "}${unit}`;
+    const bound = `${one.least ? "≥" : "≤"} ${short(one.bound * factor)}${unit === "°" ? "" : " "}${unit}`;
     const value = one.value === null ? (one.name === "grinding wheel" ? "convex" : "∞") : `${short(one.value * factor)}${unit === "°" ? "" : " "}${unit}`;
     const line = row([one.name, bound, value, one.value === null && one.kept ? "" : `${(one.angle * DEGREE).toFixed(1)}°`, one.kept ? "kept" : "broken"], "td");
     if (!one.kept) line.lastChild.className = "broken";

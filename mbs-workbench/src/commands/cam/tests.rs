@@ -276,3 +276,32 @@ fn harmonics_of_the_command_are_their_sum() {
         assert!(refused.contains(expected), "{text}: {refused}");
     }
 }
+
+/// Profile → lift by `--measured` → law by its file, and the page's heading of a law that has a `/` in it.
+#[test]
+fn the_lift_of_a_measured_profile_is_a_law_and_a_law_is_no_path() {
+    let folder = target_directory().join("tmp").join("cam_there_and_back");
+    let roller = format!("--follower roller --base 17mm --roller 12mm --out {}", folder.display());
+    let mut text = Vec::new();
+    run(&parsed(&format!("{LAW} {roller}"), None), &mut Output::new(&mut text, None)).expect("a profile");
+    let file = |name: &str| folder.join(name).display().to_string();
+    let contour = ["--columns", "-,-,-,-,-,m,m"];
+    let (words, profile) = (format!("--measured {roller}"), file("profile.csv"));
+    let words: Vec<&str> = [profile.as_str()].into_iter().chain(words.split(' ')).chain(contour).collect();
+    let measured = Line::try_parse_from(words).unwrap_or_else(|why| panic!("{why}")).arguments;
+    run(&measured, &mut Output::new(&mut text, None)).expect("a lift");
+    let law = law_options::written(LAW).expect("a law").lift;
+    let read = law_options::written(&file("lift.csv")).expect("all its columns have units").lift;
+    for k in 0..36 {
+        let theta = f64::from(10 * k).to_radians();
+        let [found, exact] = [&read, &law].map(|lift| lift.jet::<f64>(theta)[0]);
+        assert!((found - exact).abs() < 1e-6, "{theta}: {found} {exact}");
+    }
+    // A file of more columns is asked for two of them.
+    let many = law_options::written(&profile).map(|_| ()).expect_err("many columns").to_string();
+    assert!(many.contains("columns with units, and two are read"), "{many}");
+    let spline = "bspline:degree 5; knots 0deg 80deg 80deg 80deg 160deg; at 0deg: s = 0, v = 0, a = 0; \
+                  at 80deg: s = 11mm, v = 0, a = -15mm/rad^2; at 160deg: s = 0, v = 0, a = 0";
+    assert_eq!(law_options::written(spline).expect("a law").name, spline);
+    assert_eq!(law_options::written(&file("lift.csv")).expect("a law").name, "lift.csv");
+}

@@ -4,11 +4,14 @@ use core::f64::consts::{PI, TAU};
 
 use mbs_workbench::cams::limits::{Limits, examine};
 use mbs_workbench::cams::noise;
-use mbs_workbench::study::{Section, StudyError, Table};
+use mbs_workbench::study::{Picture, Section, StudyError, Table};
 
 use super::super::design::Curve;
-use super::super::motion::{FORCES, Misfit, Ordinary, Turn, against_law};
+use super::super::motion::{FORCES, Misfit, Ordinary, Permanent, Turn, against_law};
 use super::{Case, Chain, TOLERANCE, case, failed, moving, pictures, tables};
+
+/// Said with tables of peaks.
+const LARGEST: &str = "Largest values are those of all steps of the motion. Curves and arrows have the largest value from one shown cam angle to the next.";
 
 /// Points of the tables whose mismatch is drawn.
 const SHOWN: u32 = 180;
@@ -61,8 +64,29 @@ pub fn synthesis(chain: &Chain) -> Result<Section, StudyError> {
         title: "Synthesis of both cams".to_string(),
         text: vec!["Closed forms from the lift law to both pitch curves and contours; derivatives are exact. A hollow flank needs a smaller grinding wheel than its R.".to_string()],
         tables: vec![table],
-        pictures: vec![moving::kinematic(chain)?, pictures::law(chain)],
+        pictures: [moving::kinematic(chain)?, pictures::law(chain)]
+            .into_iter()
+            .chain(pictures::cams(chain))
+            .collect(),
     })
+}
+
+/// Curves of permanent contact: the motion against the law, and the distance of the rockers in closed form and on the tables `of`.
+fn permanent(chain: &Chain, exact: &[Curve; 2], of: &str) -> Result<Vec<Picture>, StudyError> {
+    let places = |curves: &[Curve; 2]| Permanent::of(&chain.design, curves, 720, OFFSET).map_err(failed);
+    let (closed, tabled) = (places(exact)?, format!("of {of}"));
+    let mut drawn = Vec::new();
+    let on_tables = if chain.values.get("points") > 0.0 {
+        let own = places(&chain.curves)?;
+        drawn.extend(pictures::permanent(chain, &tabled, &own));
+        own
+    } else {
+        drawn.extend(pictures::permanent(chain, "in closed form", &closed));
+        places(&tables(exact, SHOWN)?)?
+    };
+    drawn.push(pictures::distance("in closed form", &closed));
+    drawn.push(pictures::distance(&tabled, &on_tables));
+    Ok(drawn)
 }
 
 /// Permanent contact against the law, with tables of the cams and with noise in a table of the lift.
@@ -132,6 +156,8 @@ pub fn kinematics(chain: &Chain) -> Result<Section, StudyError> {
             fitted,
         ]);
     }
+    let mut drawn = permanent(chain, &exact, &of)?;
+    drawn.extend(shown.map_or_else(Vec::new, |misfit| pictures::misfits(&of, &misfit)));
     Ok(Section {
         title: "Kinematic check".to_string(),
         text: vec![
@@ -140,7 +166,7 @@ pub fn kinematics(chain: &Chain) -> Result<Section, StudyError> {
             "Third table: uniform noise of 1 µm in a table of the lift. More points make a spline through all of them worse; fewer knots keep the noise out.".to_string(),
         ],
         tables: vec![table, misfits, noisy],
-        pictures: shown.map_or_else(Vec::new, |misfit| pictures::misfits(&of, &misfit)),
+        pictures: drawn,
     })
 }
 
@@ -200,7 +226,7 @@ pub fn dynamics(chain: &Chain, speed: f64) -> Result<(Section, String), StudyErr
     );
     let section = Section {
         title: format!("Rigid dynamics at {:.0} 1/min", revolutions(speed)),
-        text: vec![said.clone(), balance],
+        text: vec![said.clone(), balance, LARGEST.to_string()],
         tables: vec![table],
         pictures: vec![
             pictures::accelerations(chain, speed, &tight, &loose),
@@ -237,7 +263,7 @@ pub fn spring(chain: &Chain) -> Result<Section, StudyError> {
         let off =
             turn.lift().iter().zip(&law).fold(0.0, |most: f64, (lift, law)| most.max((lift - law).abs()));
         let is_open = |k: &usize| turn.lift()[*k] > 5e-4;
-        let flies = |k: &usize| turn.forces[0][*k] <= 0.0 || turn.forces[1][*k] <= 0.0;
+        let flies = |k: &usize| !turn.closed[0][*k] || !turn.closed[1][*k];
         let open = (0..law.len()).filter(is_open).count();
         let flying = (0..law.len()).filter(is_open).filter(flies).count();
         table.push([

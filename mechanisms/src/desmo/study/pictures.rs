@@ -1,9 +1,10 @@
 //! Plots of the study.
 
+use mbs_workbench::cams::follower::{Cam, Place};
 use mbs_workbench::study::Picture;
 use mbs_workbench::study::plot::{Curve as Line, Plot, Timeline};
 
-use super::super::motion::{FORCES, Misfit, Turn};
+use super::super::motion::{FORCES, Misfit, Permanent, Turn};
 use super::Chain;
 
 const ANGLE: &str = "cam angle (deg)";
@@ -22,6 +23,74 @@ pub fn law(chain: &Chain) -> Picture {
         x: ANGLE.to_string(),
         y: "over the largest magnitude".to_string(),
         curves: vec![curve(0, "s", "mm"), curve(1, "s'", "mm/rad"), curve(2, "s''", "mm/rad²")],
+        ..Plot::default()
+    };
+    plot.picture()
+}
+
+/// A quantity of both cams over the cam angle.
+fn of_cams(chain: &Chain, caption: &str, y: &str, of: impl Fn(&Place<f64>) -> f64) -> Picture {
+    let angles: Vec<f64> = (0..=720).map(|k| f64::from(k) / 2.0 - 180.0).collect();
+    let curve = |(name, cam): (&str, &Cam)| {
+        let values: Vec<f64> = angles.iter().map(|angle| of(&cam.place(angle.to_radians()))).collect();
+        Line::new(name, &angles, &values)
+    };
+    let plot = Plot {
+        caption: caption.to_string(),
+        x: ANGLE.to_string(),
+        y: y.to_string(),
+        curves: ["opening cam", "closing cam"].into_iter().zip(&chain.cams).map(curve).collect(),
+        ..Plot::default()
+    };
+    plot.picture()
+}
+
+/// Curvature of the contour, pressure angle and sliding of both cams over the cam angle.
+pub fn cams(chain: &Chain) -> Vec<Picture> {
+    vec![
+        of_cams(
+            chain,
+            "Curvature of the contours, below 0 where they are hollow",
+            "curvature (1/mm)",
+            |place| 1e-3 / place.radius,
+        ),
+        of_cams(chain, "Pressure angle", "pressure angle (deg)", |place| place.pressure.to_degrees()),
+        of_cams(chain, "Sliding velocity", "sliding (mm/rad)", |place| 1e3 * place.sliding),
+    ]
+}
+
+/// Lift, velocity and acceleration of permanent contact over those of the law; `of` says which pitch curves.
+pub fn permanent(chain: &Chain, of: &str, found: &Permanent) -> Vec<Picture> {
+    let law = found.law(&chain.design.law);
+    let scaled = |values: &[f64]| values.iter().map(|value| 1e3 * value).collect::<Vec<_>>();
+    let picture = |(order, (name, unit)): (usize, (&str, &str))| {
+        let plot = Plot {
+            caption: format!("{name} of the valve against the law, pitch curves {of}"),
+            x: ANGLE.to_string(),
+            y: format!("{} ({unit})", name.to_lowercase()),
+            curves: vec![
+                Line::new("valve", &found.angle, &scaled(&found.columns[order])),
+                Line::new("law", &found.angle, &scaled(&law[order])).dashed(),
+            ],
+            ..Plot::default()
+        };
+        plot.picture()
+    };
+    let orders = [("Lift", "mm"), ("Velocity", "mm/rad"), ("Acceleration", "mm/rad²")];
+    orders.into_iter().enumerate().map(picture).collect()
+}
+
+/// Distance of both rockers at the valve over the cam angle; `of` says which pitch curves.
+pub fn distance(of: &str, found: &Permanent) -> Picture {
+    let largest = found.apart.iter().fold(0.0, |most: f64, apart| most.max(apart.abs()));
+    // A power of ten in the unit: the numbers of the axis are short.
+    let power = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
+    let values: Vec<f64> = found.apart.iter().map(|apart| apart * 10.0_f64.powi(-power)).collect();
+    let plot = Plot {
+        caption: format!("Distance of the rockers, pitch curves {of}"),
+        x: ANGLE.to_string(),
+        y: format!("distance (1e{power} m)"),
+        curves: vec![Line::new("fork from the opener's place of the valve", &found.angle, &values)],
         ..Plot::default()
     };
     plot.picture()

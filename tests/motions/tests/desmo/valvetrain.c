@@ -18,6 +18,9 @@
 #define PI 3.14159265358979323846
 #define KNOTS 720 /* of a cam's table */
 #define LEGS 72
+/* Instants at which peaks are looked for: an impact takes 10 to 50 µs, a turn 7 to 12 ms. */
+#define CASE_SAMPLES (500 * LEGS)
+#define RUN_SAMPLES 28800
 
 static const double CENTRE[2] = {0.012, 0.020}; /* of both cams (m) */
 static const double HALF = 80.0 * PI / 180.0;   /* half the duration of the lift (rad) */
@@ -234,7 +237,7 @@ static void reference(void) {
         Train train = ready(cases[i].speed, cases[i].play, cases[i].guide);
         Run run = start(DP5, 3e-13);
         double peak[6], lifts[LEGS];
-        peaks(&train, &run, cases[i].turns * 2 * PI / train.speed, 3600, peak, lifts);
+        peaks(&train, &run, cases[i].turns * 2 * PI / train.speed, CASE_SAMPLES, peak, lifts);
         printf("lift,%s", cases[i].name);
         for (int k = 0; k < LEGS; k++) printf(",%.15e", lifts[k]);
         printf("\npeak,%s", cases[i].name);
@@ -256,7 +259,7 @@ static void reference(void) {
         double turn = 2 * PI / train.speed, peak[6];
         advance(&train, &moving, 2 * turn);
         for (int k = 3; k <= 5; k++) {
-            peaks(&train, &moving, k * turn, 1440, peak, NULL);
+            peaks(&train, &moving, k * turn, RUN_SAMPLES, peak, NULL);
             printf("run,%d,%.15f,%.15f,%.15f", k, factors[0], factors[1], factors[2]);
             print_peaks(peak);
         }

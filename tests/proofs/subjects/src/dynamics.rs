@@ -174,6 +174,8 @@ where
     entry::advance_to(&mut motion, black_box(R::constant(0.1)))?;
     black_box(entry::sample(&mut motion, black_box(R::constant(0.15)), black_box(3))?);
     black_box(entry::watch(&mut motion, black_box(R::constant(0.2)), black_box(2))?);
+    // At the present time: the motion goes on as without it.
+    black_box(entry::watch_steps(&mut motion, black_box(R::constant(0.2)), black_box(2))?);
     entry::advance_through(&mut motion, black_box(R::constant(0.3)), black_box(R::constant(0.25)))?;
     let passed = black_box(R::constant(0.0));
     black_box(entry::advance_until_event(

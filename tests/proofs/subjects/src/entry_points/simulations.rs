@@ -139,6 +139,16 @@ entry_points! {
         simulation.watch(until, samples, |shown| missing = missing + shown.balance().defect)?;
         Ok(missing)
     }
+    /// Adaptive steps with the whole simulation shown at parts of each: the sum of what is missing in their energy.
+    fn watch_steps[
+        S: Dynamic<R, N, M>, I: Embedded, F: Formulation<S, R, N, M> + Clone, R: Real, const N: usize, const M: usize
+    ](
+        simulation: &mut Simulation<S, Explicit<I, F>, R, N, M>, until: R, parts: u32,
+    ) -> Result<R, Failure> {
+        let mut missing = R::constant(0.0);
+        simulation.watch_steps(until, parts, |shown| missing = missing + shown.balance().defect)?;
+        Ok(missing)
+    }
     /// Forces from motion.
     fn inverse[S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize](
         mechanism: &S, t: R, q: &[R; N], states: &S::States,
