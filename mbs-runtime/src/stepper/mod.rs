@@ -341,7 +341,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let zero = R::constant(0.0);
         let scales = self.mechanism.row_scales(&self.parameters);
         let rows = self.phi().into_iter().zip(scales).zip(self.mechanism.widths(&self.parameters));
-        let held = rows.filter(|(_, width)| !(zero < *width));
+        let held = rows.filter(|(_, width)| *width <= zero);
         held.fold(zero, |largest, ((residual, scale), _)| largest.max((residual / scale).abs()))
     }
 
