@@ -1,7 +1,7 @@
 //! Friction that sticks on the normal force of a contact, and its power in a state.
 
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, RungeKutta4, Simulation, Tolerance};
-use mbs_runtime::mechanism;
+use mbs_runtime::{Real, mechanism};
 
 mechanism! {
     /// A block on a contact, let go in its depth at rest or above it.
@@ -74,4 +74,40 @@ fn the_heat_is_the_work_that_is_missing() {
     run.advance_to(10.0).expect("it moves");
     let [heat, given] = *run.states();
     assert!(heat > 10.0 && (given - heat - run.balance().energy.kinetic).abs() < 1e-7, "{:?}", run.instant());
+}
+
+mechanism! {
+    /// A heavy body that slides to rest on rigid ground, a light one beside it, and one that a belt holds.
+    pub mechanism Company;
+    coord heavy: [m; 2] = [0, 0];
+    coord light: [m; 2] = [0, 0];
+    coord held: m = 0;
+    body heavy_body { mass: 2kg, com: heavy }
+    body light_body { mass: 0.2kg, com: light }
+    body held_body { mass: 1kg, com: [held, 0] }
+    gravity weight { acceleration: [0, -9.81] }
+    contact ground { gap: heavy[1], restitution: 0 }
+    contact floor { gap: light[1], restitution: 0 }
+    friction rub { along: heavy[0], normal: normal(ground), coefficient: 0.3, sticks: 0.4 }
+    friction belt { along: held - 0.1 [m/s]*t, normal: 9.81N, coefficient: 0.1, sticks: 0.15 }
+    start heavy = [0, 0] rate [1, 0];
+    start held = 0 rate 0.1;
+}
+
+/// Rows that stick of different masses and limits are no rows that follow from others, in single precision either.
+#[test]
+fn a_body_comes_to_rest_beside_light_ones_and_tight_ones() {
+    fn stops<R: Real>(allowed: f64) {
+        let method = Explicit::new(DormandPrince8, Projection::default());
+        let run = Simulation::start_from_text(Company::<R>::default(), method, R::constant(0.0));
+        let mut run = run.expect("it starts").with_tolerance(Tolerance::new(1e-5));
+        run.advance_to(R::constant(0.6)).expect("it comes to rest");
+        let end = 1.0 / (2.0 * 0.3 * 9.81);
+        let [place, height, _, _, held] = run.q().map(Real::to_f64);
+        assert!((place - end).abs() < allowed && height == 0.0, "{place} {end} {height}");
+        assert!((held - 0.06).abs() < allowed, "{held}");
+        assert!(run.qd()[0].to_f64().abs() < 1e-12, "{:e}", run.qd()[0].to_f64());
+    }
+    stops::<f32>(1e-6);
+    stops::<f64>(1e-12);
 }

@@ -122,7 +122,8 @@ impl<R: Real, const K: usize> Shares<R, K> {
         let (factors, margin) = Lu::factorize(&matrix, &[one; K], &[one; K]);
         let mut shares = Shares { mask: *mask, weights, matrix, factors, singular: false };
         // Written so that NaN is singular.
-        if !set_valued::DEPENDENT.of::<R>().less(margin) {
+        let is_regular = |margin: R| set_valued::DEPENDENT.of::<R>().less(margin);
+        if !is_regular(margin) && !is_regular(own_margin(&matrix)) {
             let mut raised = matrix;
             diagonal_mut(&mut raised).for_each(|entry| *entry = *entry + set_valued::RAISED.of());
             shares.factors = Lu::factorize(&raised, &[one; K], &[one; K]).0;
@@ -151,6 +152,20 @@ impl<R: Real, const K: usize> Shares<R, K> {
         }
         x
     }
+}
+
+/// Margin of `matrix` (K × K) with a diagonal of 1, so that neither limits nor masses of different size make it small.
+#[cold]
+#[inline(never)]
+fn own_margin<R: Real, const K: usize>(matrix: &[[R; K]; K]) -> R {
+    let (zero, one) = (R::constant(0.0), R::constant(1.0));
+    let (mut weights, mut scaled) = ([one; K], *matrix);
+    for (index, (weight, row)) in weights.iter_mut().zip(matrix).enumerate() {
+        let own = at(row, index);
+        *weight = if zero < own { one / own.sqrt() } else { one };
+    }
+    scale(&mut scaled, &weights);
+    Lu::factorize(&scaled, &[one; K], &[one; K]).1
 }
 
 /// Rows and columns times `weights` (K).
