@@ -7,13 +7,14 @@ use crate::{browser, costs, documents, fuzz, growth, instructions, lines, plante
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 11] = [
+const LONG: [(&str, &str); 12] = [
     ("mbs-codegen", ""),
     ("mbs-motions", ""),
     ("mbs-cases", "events"),
     ("mbs-cases", "friction"),
     ("mbs-cases", "impacts"),
     ("mbs-cases", "laws"),
+    ("mechanisms", "catalogue"),
     ("mechanisms", "effects"),
     ("mechanisms", "lecture"),
     ("mbs-tests", "assembly"),
