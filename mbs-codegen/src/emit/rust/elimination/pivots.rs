@@ -18,7 +18,7 @@ pub(super) struct Eliminated {
     pub(super) pivot: Pivot,
     /// Column by column of the pivot, a weight for each of its rows; empty for the last pivot.
     pub(super) inverse: Vec<Vec<Entry>>,
-    /// What a component by these weights is multiplied by.
+    /// Factor of a component by these weights; none for other pivots.
     pub(super) length: Entry,
     /// Rows below, that of the component across among them, and the multipliers of the pivot's rows that are subtracted from each.
     pub(super) multipliers: Vec<(usize, Vec<Entry>)>,
