@@ -1,7 +1,9 @@
 //! Two tiers of checks: a change must pass the first, a release the second.
 
+use std::process::{Command, Stdio};
+
 use crate::shell::{command, exists, install, need, output, root, step};
-use crate::{browser, costs, documents, fuzz, growth, instructions, lines, planted};
+use crate::{browser, costs, documents, fuzz, growth, lines, planted};
 
 /// The oldest compiler that the workspace names.
 const OLDEST: &str = "1.89";
@@ -47,9 +49,18 @@ pub fn ci() -> Result<(), String> {
         ],
     ))?;
     documents::rustdoc()?;
-    step(&mut command("cargo", &["test", "--workspace"]))?;
-    instructions::run(false)?;
-    hard_cases(&[], &["--cases", FEW_CASES])
+    step(&mut command("cargo", &["test", "--workspace", "--no-run"]))?;
+    // Many tests keep one core busy. The other one counts instructions meanwhile, and runs hard cases.
+    let counts = || {
+        let own = std::env::current_exe().map_err(|error| format!("this program: {error}"))?;
+        let counted = output(command(&own.display().to_string(), &["instructions"]).stdin(Stdio::null()))?;
+        let judged = output(&mut hard_cases(&[], &["--cases", FEW_CASES]))?;
+        Ok(counted + &judged)
+    };
+    let tests = || step(&mut command("cargo", &["test", "--workspace"]));
+    let (tested, counted) = beside(tests, counts);
+    println!("{}", counted.as_ref().map_or("", String::as_str));
+    tested.and(counted.map(drop))
 }
 
 /// Cases of the first tier, one a kind of trouble: a program of all takes seven minutes of processor time to build. Their program is built
@@ -81,16 +92,30 @@ pub fn full() -> Result<(), String> {
     lines::run(false)?;
     costs::peers()?;
     costs::index()?;
-    hard_cases(&["--release"], &["--variants", "8"])?;
+    step(&mut hard_cases(&["--release"], &["--variants", "8"]))?;
     planted::run(&[])?;
     fuzz::run(60, false)?;
     oldest()
 }
 
-/// The list of hard cases: none of its runs is wrong. `profile`: options of `cargo run`.
-fn hard_cases(profile: &[&str], options: &[&str]) -> Result<(), String> {
+/// The list of hard cases: it fails where one of its runs is wrong. `profile`: options of `cargo run`.
+fn hard_cases(profile: &[&str], options: &[&str]) -> Command {
     let words = ["-p", "mbs-workbench", "--bin", "mbs", "--", "hard-cases", "--quick"];
-    step(command("cargo", &["run"]).args(profile).args(words).args(options))
+    let mut run = command("cargo", &["run"]);
+    run.args(profile).args(words).args(options);
+    run
+}
+
+/// Results of two tasks at the same time.
+fn beside<A, B: Send>(
+    first: impl FnOnce() -> A,
+    second: impl FnOnce() -> Result<B, String> + Send,
+) -> (A, Result<B, String>) {
+    std::thread::scope(|scope| {
+        let second = scope.spawn(second);
+        let first = first();
+        (first, second.join().unwrap_or_else(|_| Err("a task ended by a panic".to_string())))
+    })
 }
 
 /// Fails where a crate is built twice, for the macro and for the tests: with other features, or in another version.
