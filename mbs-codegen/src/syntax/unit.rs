@@ -249,11 +249,20 @@ fn no_exponent(parser: &mut Parser<'_>, unit: &Unit, begin: usize) -> Read<()> {
     let base = written(unit.factors.get(begin..).unwrap_or_default());
     let (span, exponent) = (parser.span(), quoted(operand_behind(parser)));
     let number = exponent.trim_matches(['(', ')']).trim();
-    let (message, help) = match number.parse::<f64>() {
-        Ok(value) if value.fract() == 0.0 && value.abs() <= 12.0 => {
+    // Halves as fractions, `1/2`.
+    let half = number.split_once('/').filter(|(_, below)| below.trim() == "2");
+    let half = half
+        .and_then(|(above, _)| above.trim().parse::<i8>().ok())
+        .filter(|above| (-24..=24).contains(above));
+    let half = half.map(|above| f64::from(above) / 2.0);
+    let (message, help) = match (half, number.parse::<f64>()) {
+        (Some(half), _) => {
+            ("an exponent of a unit is written as a decimal number".into(), format!("write `{base}^{half}`"))
+        }
+        (None, Ok(value)) if value.fract() == 0.0 && value.abs() <= 12.0 => {
             ("an exponent of a unit is written as an integer".into(), format!("write `{base}^{value}`"))
         }
-        Ok(value) if value.fract() == 0.0 => (
+        (None, Ok(value)) if value.fract() == 0.0 => (
             format!("`{base}^{number}` is beyond the largest exponent"),
             "exponents of units reach up to 12".into(),
         ),

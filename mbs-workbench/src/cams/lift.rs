@@ -406,22 +406,30 @@ impl Lift {
 
     /// Jumps at the joints beside what the laws state.
     pub fn continuity(&self) -> Continuity {
-        const APART: f64 = 1e-9;
+        /// Distance of the places beside a joint, over that of the nearest joints and at most.
+        const APART: [f64; 2] = [1e-8, 1e-9];
+        let joints = self.joints();
         let mut largest = [f64::MIN_POSITIVE; 4];
-        for k in 0..720 {
-            let jet = self.jet(self.origin + TAU * f64::from(k) / 720.0);
-            largest.iter_mut().zip(jet).for_each(|(most, value)| *most = most.max(value.abs()));
+        let mut look = |theta: f64| {
+            largest.iter_mut().zip(self.jet(theta)).for_each(|(most, value)| *most = most.max(value.abs()));
+        };
+        (0..720).for_each(|k| look(self.origin + TAU * f64::from(k) / 720.0));
+        let mut apart = APART[1];
+        for pair in joints.windows(2) {
+            let length = pair[1] - pair[0];
+            apart = apart.min(APART[0] * length).max(1e-12);
+            (1..16).for_each(|k| look(pair[0] + length * f64::from(k) / 16.0));
         }
         let (mut jumps, mut places) = ([0.0_f64; 4], [0.0; 4]);
-        for joint in self.joints() {
-            let [before, after] = [joint - APART, joint + APART].map(|place| self.jet(place));
+        for joint in joints {
+            let [before, after] = [joint - apart, joint + apart].map(|place| self.jet(place));
             for order in 0..4 {
                 // What the next derivative explains over the distance is no jump.
                 let slope = before
                     .get(order + 1)
                     .zip(after.get(order + 1))
                     .map_or(0.0, |(a, b)| a.abs().max(b.abs()));
-                let jump = ((before[order] - after[order]).abs() - 4.0 * APART * slope) / largest[order];
+                let jump = ((before[order] - after[order]).abs() - 4.0 * apart * slope) / largest[order];
                 if jump > jumps[order] {
                     (jumps[order], places[order]) = (jump, joint);
                 }
@@ -459,6 +467,9 @@ mod tests {
             .iter()
             .map(|(_, flank)| Lift::flanks(*flank, 0.01, degrees([90.0, 30.0, 110.0])).expect("a law"))
             .collect();
+        // Of a flank that lies between two angles of half a degree too.
+        let short = FLANKS.iter().map(|(_, flank)| Lift::flanks(*flank, 1e-5, degrees([0.2, 90.0, 1.0])));
+        laws.extend(short.map(|law| law.expect("a law")));
         for exponents in [&[2_u32, 4][..], &[2, 4, 6], &[2, 6, 8, 10], &[2, 6, 8, 10, 12]] {
             laws.push(Lift::hump(exponents, 0.011, 160_f64.to_radians()).expect("a law"));
         }

@@ -221,8 +221,22 @@ fn recover(arguments: &Arguments, directory: &Path, out: &mut Output) -> Result<
             (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
         writeln!(out, "{name:<13}{low:.4} to {high:.4} {unit}{}", ["", "/rad", "/rad^2"][order])?;
     }
+    if let Some(least) = least_off_the_base(found.motion.iter().map(|(_, motion)| motion[0])) {
+        let least = factor * least;
+        writeln!(
+            out,
+            "base         the least lift is {least:.4} {unit}, not 0: check `--base`, and that the profile is about the cam's centre"
+        )?;
+    }
     writeln!(out, "file         {}", path.display())?;
     Ok(())
+}
+
+/// The least of these lifts, where it is off 0 by more than a thousandth of their range.
+fn least_off_the_base(lifts: impl Iterator<Item = f64> + Clone) -> Option<f64> {
+    let least = lifts.clone().fold(f64::INFINITY, f64::min);
+    let range = lifts.fold(f64::NEG_INFINITY, f64::max) - least;
+    (least.abs() > 1e-3 * range).then_some(least)
 }
 
 /// Noise of the acceleration against points and knots.

@@ -109,6 +109,11 @@ pub fn require(text: &TextFile) -> Result<(), CommandError> {
     Ok(())
 }
 
+/// The function of the command line by its name, where this program has it.
+pub fn given(name: &str) -> Option<GivenFunction> {
+    MADE.lock().unwrap_or_else(PoisonError::into_inner).get(name).cloned()
+}
+
 /// Facts of a page: the functions of the command line, each with the file and the points of its table, or with its law.
 pub fn facts() -> Vec<[String; 2]> {
     let known = MADE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -290,6 +295,17 @@ fn is_unit(unit: &str, declared: &str) -> bool {
     // A bare number would fit every unit.
     let one = if unit == "1" { "1rad".to_string() } else { format!("1 [{unit}]") };
     quantity(&one).is_ok_and(|quantity| quantity.fits(declared))
+}
+
+#[cfg(test)]
+impl GivenFunction {
+    /// A table of 36 points of a function over a turn.
+    pub fn of_turn(function: impl Fn(f64) -> f64) -> Self {
+        let x: Vec<f64> = (0..36).map(|k| f64::from(10 * k).to_radians()).collect();
+        let y: Vec<f64> = x.iter().map(|angle| function(*angle)).collect();
+        let spline = Spline::fit(&x, &y, SplineKind::PeriodicQuintic(TAU), None).expect("a table");
+        GivenFunction(Arc::new(Given { form: Form::Table(spline), said: String::new() }))
+    }
 }
 
 impl<T: Scalar> Function<T> for GivenFunction {

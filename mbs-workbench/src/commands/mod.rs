@@ -20,6 +20,7 @@ pub mod drift;
 pub mod effects;
 mod effects_words;
 pub mod expand;
+mod feet;
 pub mod fmt;
 pub mod functions;
 mod given_file;

@@ -10,6 +10,7 @@ use crate::mismatch::{Mismatch, set};
 
 use super::CommandError;
 use super::assignment::{Assignment, with_unit};
+use super::feet;
 use super::rows::with_rows;
 use crate::text_file::is_file;
 
@@ -83,7 +84,8 @@ impl Target {
 
     /// An instance with the preset's parameters and those of the command line.
     ///
-    /// Lengths, masses, moments of inertia and stiffnesses of the command line are physically possible.
+    /// Lengths, masses, moments of inertia and stiffnesses of the command line are physically possible, and bounds of feet within the
+    /// reach of curves that it gives.
     pub fn instance(&self, preset: &Preset, parameters: &[Assignment]) -> Result<Erased, CommandError> {
         let mut instance = self.card.instance(preset)?;
         for parameter in parameters {
@@ -93,6 +95,7 @@ impl Target {
             set(equations, &parameter.name, value).map_err(|mismatch| mismatch.of(&self.name))?;
         }
         let equations = instance.equations();
+        feet::require(equations)?;
         if parameters.is_empty() {
             return Ok(instance);
         }

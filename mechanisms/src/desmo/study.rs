@@ -126,6 +126,18 @@ impl<'a> Chain<'a> {
             Some(law) => closed_half_a_turn_from_its_origin(law.clone())?,
             None => Design::law(values.get("lift"), values.get("duration")).map_err(failed)?,
         };
+        let play = values.get("open_play") + values.get("close_play");
+        let lift =
+            (0..360).map(|degrees| law.jet::<f64>(f64::from(degrees).to_radians())[0]).fold(0.0, f64::max);
+        // Steps of the chain double it.
+        if 2.0 * play >= lift {
+            return Err(StudyError(format!(
+                "`open_play` and `close_play` are {:.3} mm together, half of the lift of {:.3} mm or more\n\
+                 help: lengths without a unit are in m; write `--param open_play=0.05mm`",
+                1e3 * play,
+                1e3 * lift
+            )));
+        }
         let design = Design::ready(law, direction);
         let cams = design.cams().map_err(failed)?;
         let mut curves = design.curves().map_err(failed)?;

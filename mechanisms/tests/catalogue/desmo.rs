@@ -152,9 +152,11 @@ fn a_study_refuses_values_that_it_cannot_run_with() {
         let refused = Values::of(&STUDY).set(name, value).expect_err("out of range").to_string();
         assert!(refused.contains("it must be") && refused.contains("help: its default is"), "{refused}");
     }
-    for (name, value, expected) in
-        [("points", 3.0, "`points` is 0 or at least 16"), ("lift", 0.1, "does not reach the cam")]
-    {
+    for (name, value, expected) in [
+        ("points", 3.0, "`points` is 0 or at least 16"),
+        ("lift", 0.1, "does not reach the cam"),
+        ("open_play", 0.05, "50.030 mm together, half of the lift of 11.000 mm or more"),
+    ] {
         let mut values = Values::of(&STUDY);
         values.set(name, value).expect("a parameter");
         let refused = (STUDY.run)(&values, &mut |_| ()).map(|_| ()).expect_err(name).to_string();

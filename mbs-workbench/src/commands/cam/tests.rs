@@ -286,10 +286,23 @@ fn the_lift_of_a_measured_profile_is_a_law_and_a_law_is_no_path() {
     run(&parsed(&format!("{LAW} {roller}"), None), &mut Output::new(&mut text, None)).expect("a profile");
     let file = |name: &str| folder.join(name).display().to_string();
     let contour = ["--columns", "-,-,-,-,-,m,m"];
-    let (words, profile) = (format!("--measured {roller}"), file("profile.csv"));
-    let words: Vec<&str> = [profile.as_str()].into_iter().chain(words.split(' ')).chain(contour).collect();
-    let measured = Line::try_parse_from(words).unwrap_or_else(|why| panic!("{why}")).arguments;
-    run(&measured, &mut Output::new(&mut text, None)).expect("a lift");
+    let profile = file("profile.csv");
+    let measured = |words: String| {
+        let words: Vec<&str> =
+            [profile.as_str()].into_iter().chain(words.split(' ')).chain(contour).collect();
+        let arguments = Line::try_parse_from(words).unwrap_or_else(|why| panic!("{why}")).arguments;
+        let mut text = Vec::new();
+        run(&arguments, &mut Output::new(&mut text, None)).expect("a lift");
+        String::from_utf8(text).expect("text")
+    };
+    // Of another base circle than that of the profile.
+    let off = measured(format!("--measured {}", roller.replace("17mm", "16mm")));
+    assert!(
+        off.contains("base         the least lift is ") && off.contains(" mm, not 0: check `--base`"),
+        "{off}"
+    );
+    let own = measured(format!("--measured {roller}"));
+    assert!(!own.contains("the least lift"), "{own}");
     let law = law_options::written(LAW).expect("a law").lift;
     let read = law_options::written(&file("lift.csv")).expect("all its columns have units").lift;
     for k in 0..36 {

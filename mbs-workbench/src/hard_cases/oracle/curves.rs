@@ -45,16 +45,30 @@ fn two(value: &Value) -> Result<[Number; 2], Gap> {
 }
 
 impl Curve {
-    fn placed<'a>(&'a self, scope: &Scope<'a>) -> Result<Placed<'a>, Gap> {
-        let scope = scope.within(&self.rounds);
+    /// Names of its functions and their numbers in arrays.
+    fn called<'a>(&'a self, scope: &Scope<'_>) -> Result<Vec<(&'a str, Option<usize>)>, Gap> {
         let functions = self.functions.iter().map(|(call, number)| {
             let Some(Operation::Call { function, .. }) = call.code.last().map(|call| &call.operation) else {
                 return Err(Gap(format!("the curve `{}`", self.name)));
             };
-            let index = number.as_ref().map(|number| value(number, &scope)?.count()).transpose()?;
+            let index = number.as_ref().map(|number| value(number, scope)?.count()).transpose()?;
             Ok((function.as_str(), index))
         });
-        let functions = functions.collect::<Result<Vec<_>, Gap>>()?;
+        functions.collect()
+    }
+
+    /// Its functions as the text calls them, `pitch` or `rim[0]`.
+    pub fn labels(&self, scope: &Scope<'_>) -> Result<Vec<String>, Gap> {
+        let label = |(name, index): (&str, Option<usize>)| match index {
+            Some(index) => format!("{name}[{index}]"),
+            None => name.to_string(),
+        };
+        Ok(self.called(&scope.within(&self.rounds))?.into_iter().map(label).collect())
+    }
+
+    fn placed<'a>(&'a self, scope: &Scope<'a>) -> Result<Placed<'a>, Gap> {
+        let scope = scope.within(&self.rounds);
+        let functions = self.called(&scope)?;
         let angle = value(&self.turned, &scope)?.number()?;
         let centre = two(&value(&self.centre, &scope)?)?;
         Ok(Placed { functions, centre, angle, scope })

@@ -6,6 +6,7 @@
 
 mod curves;
 mod evaluation;
+mod feet;
 mod functions;
 mod held;
 mod laws;
@@ -27,6 +28,7 @@ use mbs_codegen::syntax_tree::{
 use self::curves::Curve;
 pub use self::evaluation::Gap;
 use self::evaluation::{Definition, Names, Scope, Value, joined, value};
+pub use self::feet::{Follower, Foot, Outline};
 use self::functions::dot;
 pub use self::held::{HeldForces, Slack};
 pub use self::laws::Jet;
@@ -98,6 +100,28 @@ impl Oracle {
         known: &dyn Fn(&str) -> Option<f64>,
         functions: &dyn Fn(&str) -> Option<Jet>,
     ) -> Result<Self, Gap> {
+        let mut oracle = Oracle::of_names(source, scene, known, functions)?;
+        // A first look at a state without two equal numbers tells which bodies turn with coordinates, and how many rows there are.
+        let count = oracle.states.iter().map(|(_, shape)| shape.iter().product::<usize>()).sum();
+        let apart = |first: f64| (0..oracle.size()).map(|j| first + 0.017 * j as f64).collect::<Vec<_>>();
+        let state =
+            OracleState { q: apart(0.5), qd: apart(0.3), states: vec![0.0; count], ..OracleState::default() };
+        oracle.turning = oracle.turning_bodies(&oracle.names(&state, Along::Nothing), &state)?;
+        let mut groups = Vec::new();
+        oracle.each_row(&oracle.names(&state, Along::Nothing), &mut |group, rows, _| {
+            groups.push((group.to_string(), rows))
+        })?;
+        oracle.groups = groups;
+        Ok(oracle)
+    }
+
+    /// The same before its rows are looked at.
+    fn of_names(
+        source: &str,
+        scene: Option<&str>,
+        known: &dyn Fn(&str) -> Option<f64>,
+        functions: &dyn Fn(&str) -> Option<Jet>,
+    ) -> Result<Self, Gap> {
         let placed = unrolled(source, scene).map_err(Gap)?;
         let mut names = Names::default();
         let (mut coordinates, mut states, mut turns) = (Vec::new(), Vec::new(), Vec::new());
@@ -162,7 +186,7 @@ impl Oracle {
             fields.iter().any(|field| field.name.text == "bristles").then_some(index)
         };
         let bristled = placed.iter().enumerate().filter_map(is_bristled).collect();
-        let mut oracle = Oracle {
+        Ok(Oracle {
             placed: Rc::new(placed),
             coordinates,
             states,
@@ -174,19 +198,7 @@ impl Oracle {
             groups: Vec::new(),
             bristled,
             turning: Vec::new(),
-        };
-        // A first look at a state without two equal numbers tells which bodies turn with coordinates, and how many rows there are.
-        let count = oracle.states.iter().map(|(_, shape)| shape.iter().product::<usize>()).sum();
-        let apart = |first: f64| (0..oracle.size()).map(|j| first + 0.017 * j as f64).collect::<Vec<_>>();
-        let state =
-            OracleState { q: apart(0.5), qd: apart(0.3), states: vec![0.0; count], ..OracleState::default() };
-        oracle.turning = oracle.turning_bodies(&oracle.names(&state, Along::Nothing), &state)?;
-        let mut groups = Vec::new();
-        oracle.each_row(&oracle.names(&state, Along::Nothing), &mut |group, rows, _| {
-            groups.push((group.to_string(), rows))
-        })?;
-        oracle.groups = groups;
-        Ok(oracle)
+        })
     }
 
     /// Number of coordinates.
