@@ -6,7 +6,7 @@
 //! Lines before and after integrators and block solvers were shared, and searches for absent statements were left out.
 //! Watt's linkage: 95 311 and 85 591. Andrews' squeezer: 350 401 and 285 497.
 //!
-//! Lines before and after states and held rows that a text does not have were left out, and arrays were made by loops in place of `map`.
+//! Lines before and after two changes: states and held rows that a text lacks are left out, and loops make arrays in place of `map`.
 //! Watt's linkage: 95 908 and 91 700. Andrews' squeezer: 276 935 and 248 164.
 
 use std::fmt::Write as _;

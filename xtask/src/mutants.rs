@@ -165,7 +165,7 @@ pub fn sampled(seed: u64) -> Result<(), String> {
 /// Judges open mutants of the sample until so many `minutes` are over, and prints the shares.
 ///
 /// # Errors
-/// A missing tool with its cure, sources whose tests fail as they are, or once all are judged: survivors without a reason, or a share of
+/// A missing tool with its cure, sources whose tests fail as they are. Once all are judged: survivors without a reason, or a share of
 /// caught ones below 93 %.
 pub fn judged(minutes: u64) -> Result<(), String> {
     tool()?;

@@ -45,8 +45,8 @@ struct Foot {
 
 /// Reads a foot after the word `foot`. The coordinate is returned; what else it stands for is left in `parser.more`.
 ///
-/// A nearest point of a curve has no other one nearer if it is nearer than the reach of the curve: the least radius of curvature, and
-/// half the narrowest way across. Source: Federer 1959, Curvature measures, §4.8.
+/// A nearest point of a curve has no other one nearer if it is nearer than the reach of the curve. That is the least of the
+/// radius of curvature and of half the narrowest way across. Source: Federer 1959, Curvature measures, §4.8.
 pub fn read_foot(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let (word, span, begin) = (parser.peek(), parser.span(), parser.before().len());
     let read = parser.declare(Declares::Coord, FOOT, |parser, _| foot(parser));

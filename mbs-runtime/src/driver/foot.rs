@@ -62,8 +62,7 @@ impl<R: Real> Error for FootError<R> {}
 /// The nearest point of a closed polar curve r = R(w), among all feet of perpendiculars from `point`, in the axes of the curve
 /// about its centre.
 ///
-/// A part of a turn is left out where [bounds](Function::enclosure) of the function show that it is farther than a known place, or
-/// has no foot. A part where the distance is convex has one foot at most. Any other is halved. So no foot is too narrow to be seen.
+/// A part of a turn is left out where [bounds](Function::enclosure) show that it has no foot, or is farther than a known place. A part where the distance is convex has one foot at most. Any other is halved. So no foot is too narrow to be seen.
 /// `radius` is asked for two derivatives and has a period of a turn. Takes 4 kB of stack.
 ///
 /// # Errors

@@ -66,7 +66,7 @@ impl fmt::Display for ReachError {
 
 impl Error for ReachError {}
 
-/// Reach inside and outside of a closed polar curve r = R(w), in the unit of R: the radius of the largest circle that can roll
+/// Reach inside and outside of a closed polar curve r = R(w), in the unit of R. It is the radius of the largest circle that can roll
 /// on that side and touch the curve at one place alone.
 ///
 /// A foot of a perpendicular that is nearer than the reach is the nearest point of the whole curve. That is the bound of

@@ -38,7 +38,7 @@ impl<T: Scalar, const K: usize, const M: usize> Orthogonal<T, K, M> {
         (Orthogonal { lanes, row_scales: *row_scales, coordinate_scales: *coordinate_scales }, margin)
     }
 
-    /// As [`factorize`](Self::factorize), where rows with a width yield: the others are solved for, and what these leave open
+    /// As [`factorize`](Self::factorize), where rows with a width yield. The others are solved for. What these leave open
     /// is the least-squares solution of the rows that yield. The margin is that of all rows.
     ///
     /// Rows that yield weigh ω = ∛ε, so that what the others keep of a contradiction is ω² of it. They come last, and keep their

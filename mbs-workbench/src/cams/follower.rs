@@ -166,7 +166,7 @@ fn spans(apart: f64, arm: f64, reach: f64) -> Result<(), CamError> {
 }
 
 impl Follower {
-    /// A rocker by the radius of the contour at lift 0 and the arm of its pad on the cam, in place of the pad's centre.
+    /// A rocker by the radius of the contour at lift 0 and the arm of its pad on the cam.
     ///
     /// Lengths in metres. A closing cam has its largest radius at lift 0.
     ///

@@ -84,7 +84,7 @@ impl Target {
 
     /// An instance with the preset's parameters and those of the command line.
     ///
-    /// Lengths, masses, moments of inertia and stiffnesses of the command line are physically possible, and bounds of feet within the
+    /// Lengths, masses, moments of inertia and stiffnesses of the command line are physically possible. Bounds of feet are within the
     /// reach of curves that it gives.
     pub fn instance(&self, preset: &Preset, parameters: &[Assignment]) -> Result<Erased, CommandError> {
         let mut instance = self.card.instance(preset)?;

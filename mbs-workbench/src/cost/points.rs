@@ -144,10 +144,10 @@ impl Point {
 /// Error over the expected one that makes a point wrong.
 pub const WRONG: f64 = 10.0;
 
-/// Judges the points of a curve of equal steps, from coarse to fine, by what the order of the method predicts from finer ones: the larger of
+/// Judges the points of a curve of equal steps, from coarse to fine, by what the order of the method predicts from finer ones. It is the larger of
 /// the predictions from the next two, for one alone may be small by chance. More than ten times that, and more than `rounding`, is wrong; or
 /// untrusted where there is a warning of the point (`is_warned`). A finer point with other events than the reference is not in the range of its
-/// order: the order holds between the same events alone, so its prediction is not trusted.
+/// order, so its prediction is not trusted.
 pub fn judge_by_order(
     points: &mut [Point],
     order: i32,
@@ -189,8 +189,8 @@ pub fn front(points: &[Point]) -> Vec<usize> {
     front_of(points, Point::is_single)
 }
 
-/// Indices of the points to choose from, of which each may be the cheapest for some error: the front of those that are advised, and that of
-/// `f64` alone, for no error below 100 ε of `f32` is advised with it.
+/// Indices of the points to choose from, of which each may be the cheapest for some error. They are the front of those that are advised, and that of
+/// `f64` alone. For no error below 100 ε of `f32` is advised with it.
 pub fn advised_front(points: &[Point]) -> Vec<usize> {
     let is_double = |point: &Point| point.is_advised() && point.setting.numbers() == Numbers::Double;
     let mut front = front_of(points, Point::is_advised);

@@ -47,7 +47,7 @@ pub struct DrivenCosts {
 pub struct OneKind {
     /// The first of the text: a friction that sticks, a rigid contact or an event.
     pub effect: &'static str,
-    /// Numbers of its contacts with stiffness, and of rows that are rigid contacts or stand beside them: lists of
+    /// Numbers of its contacts with stiffness, and of rows that are rigid contacts or stand beside them. Lists of
     /// [`TimedRuns::contacts`] are in this order, those of events last.
     pub contacts: [usize; 2],
     /// In double-double numbers.

@@ -20,8 +20,8 @@ where
     S::remembered(&parameters).iter().take(S::EVENTS.len()).map(|value| value.to_f64() != 0.0).collect()
 }
 
-/// Adds to the lists of `found`, one an event, each time (s) at which it begins or ends between the present instant of `from` and that of
-/// `to`, a run that is ahead. `advance` takes a run to a time.
+/// Adds to the lists of `found`, one an event, each time (s) at which it begins or ends between the present instants of `from` and
+/// `to`. `advance` takes a run to a time.
 ///
 /// # Errors
 /// Those of `advance`.

@@ -40,7 +40,7 @@ impl<T: Scalar, F: Function<f64>> Function<T> for InDouble<F> {
     }
 }
 
-/// A function of the caller, or an array of them, whose numbers are looked at: `(&Given(function)).chosen()` is the function itself where
+/// A function of the caller, or an array of them, whose numbers are looked at. `(&Given(function)).chosen()` is the function itself where
 /// it takes all numbers of a study, else [`InDouble`]. All four traits must be in scope; the compiler takes the first that fits.
 #[derive(Clone, Debug)]
 pub struct Given<F>(pub F);

@@ -41,7 +41,7 @@
 //!   coordinates.
 //! - With [`Stepper`](crate::Stepper) the positions of a whole motion come one after the other, each the guess of the next.
 //! - Events of the text have the values of a run that starts there. Rigid contacts that touch and do not move along the gap are closed where
-//!   their force pushes, frictions whose length does not change stick where they can. A touch that moves, and a force that drives and rows
+//!   their force pushes. Frictions whose length does not change stick where they can. A touch that moves, and a force that drives and rows
 //!   leave open, are refused.
 //! - With dependent rows the multipliers are the shortest, and [`Driven::unique`] marks those that are unique. A coordinate that
 //!   the drives leave free follows from the forces.

@@ -105,7 +105,7 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     equilibrium_with_modes(mechanism, t, q).map(|(found, states, _)| (found, states))
 }
 
-/// [`equilibrium_with_states`] and the parameters of the rest: with the values of events, and with the modes and forces of rigid contacts and of
+/// [`equilibrium_with_states`] and the parameters of the rest. These have the values of events, and the modes and forces of rigid contacts and of
 /// frictions that stick. So [`loads`](Dynamic::loads) of them are those of the rest.
 ///
 /// # Errors

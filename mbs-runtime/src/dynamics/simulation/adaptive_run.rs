@@ -181,7 +181,7 @@ where
         self.watched(until, instants, see)
     }
 
-    /// As [`watch`](Self::watch) up to `until` (s), at `parts` equal parts of each step, its end included: steps are short where forces
+    /// As [`watch`](Self::watch) up to `until` (s), at `parts` equal parts of each step, its end included. Steps are short where forces
     /// change fast, so largest values are seen that a grid of instants misses. Shown once where `until` is the present time.
     ///
     /// # Errors

@@ -91,8 +91,8 @@ where
     X: Method<S, R, N, M>,
     R: Real,
 {
-    /// Moves on by one step of `h` (s), with a fixed amount of work. Exceptions are a step in which a contact closes or opens,
-    /// one next to a singular position, and one of [`Extrapolated`](crate::dynamics::Extrapolated) that does not resolve the forces. The
+    /// Moves on by one step of `h` (s), with a fixed amount of work. Exceptions are a step in which a contact closes or opens and
+    /// one next to a singular position. A third one is a step of [`Extrapolated`](crate::dynamics::Extrapolated) that does not resolve the forces. The
     /// first is cut there, into eight parts at most, each found by some steps. The
     /// second is taken in parts with an estimate of their error, by
     /// [`DormandPrince8`](crate::dynamics::integrators::dormand_prince8::DormandPrince8). The time is that of all steps in a row

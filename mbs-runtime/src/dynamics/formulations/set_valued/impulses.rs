@@ -1,6 +1,6 @@
 //! Impulses of one impact: of contacts alone, and of contacts with frictions on them.
 //!
-//! With friction each contact is open, sticks, or slides to one of both sides after the impact: 0 ≤ P ⊥ v⁺ + e v⁻ ≥ 0 of the gap and
+//! With friction each contact is open, sticks, or slides to one of both sides after the impact. The laws are 0 ≤ P ⊥ v⁺ + e v⁻ ≥ 0 of the gap and
 //! −P_t ∈ μ P sign(v_t⁺) of the length (Moreau's law, without restitution along the length). Each mode is a linear system. All modes of a few
 //! rows are tried; where several are consistent with other velocities the impact is undecided. Of many rows one mode is found by changes of
 //! one row at a time.

@@ -73,7 +73,7 @@ impl<R: Real> Monitor<R> {
         }
     }
 
-    /// Goes on at the end of a step, where an impact turns functions of places back: a function whose `value` there is a rounding has
+    /// Goes on at the end of a step, where an impact turns functions of places back. A function whose `value` there is a rounding has
     /// reached zero. `true` if that counts.
     pub fn reaches(&mut self, value: R, rounding: R) -> bool {
         let Some(side) = self.side.filter(|_| value.abs() <= rounding) else { return false };
