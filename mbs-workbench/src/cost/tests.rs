@@ -230,7 +230,7 @@ fn positions_of_drives_are_known_in_all_digits() {
     let Comparable::Driven(mut mechanism) = comparable(&CrankSlider::default()) else {
         panic!("a drive moves it")
     };
-    let study = driven_study(&mut mechanism, (3.0, 0.2), Kernel::Own, &mut |_, _| ()).expect("references");
+    let study = driven_study(&mut mechanism, (1.0, 0.05), Kernel::Own, &mut |_, _| ()).expect("references");
     assert!(study.width < 1e-18, "{:e}", study.width);
     let closed = |point: &&super::points::Point| {
         matches!(
