@@ -228,7 +228,9 @@ pub fn bodies(
         solve_linear: block(&linear.solve, runtime),
         work: work::work(model, equations, program, entries.len(), runtime),
         is_uncoupled,
-        sparse: (!is_uncoupled).then(|| Sparse::of(equations, structure, program, &scope, runtime)).flatten(),
+        sparse: (!is_uncoupled)
+            .then(|| Sparse::of(equations, structure, program, (&scope, is_long), runtime))
+            .flatten(),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
         complete: block(&linear.complete, runtime),
         reduce: block(&linear.reduce, runtime),

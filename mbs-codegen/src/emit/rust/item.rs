@@ -12,7 +12,7 @@ use crate::emit::rust::fields::{
 };
 use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::generics::Generics;
-use crate::emit::rust::partitioned::{partitioned, unpartitioned};
+use crate::emit::rust::partitioned::{inlined, partitioned, unpartitioned};
 use crate::emit::rust::scenes;
 use crate::emit::rust::tables::tables;
 use crate::emit::rust::view::{coordinates_view, outputs_view, stepper_alias};
@@ -361,13 +361,5 @@ fn kinematic(
             #inline
             fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #m]) -> [T; #n] #solve_linear
         }
-    }
-}
-
-/// The attribute of a function that is inlined always, or perhaps.
-pub fn inlined(always: bool) -> TokenStream {
-    match always {
-        true => quote! { #[inline(always)] },
-        false => quote! { #[inline] },
     }
 }

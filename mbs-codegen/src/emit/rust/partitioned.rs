@@ -5,8 +5,15 @@ use quote::quote;
 
 use crate::emit::rust::SceneFunctions;
 use crate::emit::rust::functions::Bodies;
-use crate::emit::rust::item::inlined;
 use crate::model::Model;
+
+/// The attribute of a function that is inlined always, or perhaps.
+pub fn inlined(always: bool) -> TokenStream {
+    match always {
+        true => quote! { #[inline(always)] },
+        false => quote! { #[inline] },
+    }
+}
 
 /// `impl Partitioned`: the blocks over the dependent coordinates, and the part of a force that the rows carry. With sparse factors a
 /// partition is a pair, the blocks first.

@@ -15,6 +15,8 @@ pub struct Sparse {
     order: SparseOrder,
     /// Body of the entries of M with `column <= row`.
     masses: TokenStream,
+    /// `true` if the factors of the blocks keep all entries of Φ_q.
+    is_long: bool,
 }
 
 impl Sparse {
@@ -23,7 +25,7 @@ impl Sparse {
         equations: &Equations,
         structure: &Structure,
         program: &Program,
-        scope: &Scope<'_>,
+        (scope, is_long): (&Scope<'_>, bool),
         runtime: &TokenStream,
     ) -> Option<Self> {
         let (dynamics, section) = (equations.dynamics.as_ref()?, &program.dynamics.as_ref()?.mass);
@@ -35,7 +37,7 @@ impl Sparse {
             entries.iter().filter(move |(column, _)| *column <= row).map(|(_, entry)| Some(*entry))
         });
         let masses = body(section, scope, &array(masses, scope), runtime);
-        Some(Sparse { order, masses })
+        Some(Sparse { order, masses, is_long })
     }
 
     /// The constant with the tables of the order.
@@ -64,16 +66,13 @@ impl Sparse {
         quote! { #runtime::__private::SparseFactors<T, #pivots, #entries> }
     }
 
-    /// The factors at a position, an expression.
+    /// The factors at a position, an expression beside the blocks `__blocks`.
     pub fn factorized(&self, coordinates: usize, runtime: &TokenStream) -> TokenStream {
         let (kind, masses) = (self.factors(runtime), &self.masses);
-        quote! {
-            <#kind>::factorize(
-                &__ORDER,
-                #coordinates,
-                &#masses,
-                &#runtime::Mechanism::phi_q_entries(self, __p, __s),
-            )
-        }
+        let rows = match self.is_long {
+            true => quote! { __blocks.entries },
+            false => quote! { #runtime::Mechanism::phi_q_entries(self, __p, __s) },
+        };
+        quote! { <#kind>::factorize(&__ORDER, #coordinates, &#masses, &#rows) }
     }
 }

@@ -1,4 +1,4 @@
-//! Linear systems of the equations of motion: saddle-point system, dense and sparse, null space, tangents, sign patterns, first-order states.
+//! Linear systems of the equations of motion: saddle-point system, dense and without its zeros, null space, tangents, sign patterns, first-order states.
 
 pub(crate) mod blocks;
 pub(crate) mod integrals;
