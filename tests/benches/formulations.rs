@@ -15,13 +15,14 @@ use std::fs;
 use std::hint::black_box;
 use std::path::Path;
 use std::process::ExitCode;
+use std::thread::Builder;
 use std::time::Instant;
 
 use mbs_runtime::dynamics::{
-    Baumgarte, DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, Projection, Simulation,
-    Tolerance, VelocityTransformation,
+    Baumgarte, DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, Metric, Projection,
+    Simulation, System, Tolerance, VelocityTransformation,
 };
-use mbs_runtime::{Dynamic, Failure, mechanism};
+use mbs_runtime::{Dynamic, Failure, Mechanism, Partitioned, mechanism};
 
 mechanism! {
     /// A plate on three parallel cranks without mass: one row of their heads follows from the others.
@@ -51,6 +52,23 @@ mechanism! {
     constraint guide redundant { B[1] == 0; 2*B[1] == 0m; }
     start A = [0.3, 0.4] rate [0, 0];
 }
+
+mechanism! {
+    /// A chain of 200 links from point to point, as the hard case `falling_chain`.
+    mechanism Chain;
+    const N: 1 = 200;
+    coord P: [m; N, 2];
+    gravity weight { acceleration: [0, -9.81] }
+    for i in 0..N {
+        body point { mass: 1, com: P[i] }
+        start P[i] = [(i + 1)*5mm, 0] rate [0, 0];
+    }
+    constraint first { dot(P[0], P[0]) == (5mm)^2; }
+    for i in 1..N { constraint links { dot(P[i] - P[i - 1], P[i] - P[i - 1]) == (5mm)^2; } }
+}
+
+/// Room (bytes) for the dense matrices of the chain.
+const STACK: usize = 1 << 28;
 
 /// Tolerances: 10⁻ᵏ.
 const EXPONENTS: core::ops::RangeInclusive<i32> = 4..=12;
@@ -166,6 +184,56 @@ where
     }
 }
 
+/// Least time (s) of `run` in seven rounds.
+fn least(mut run: impl FnMut()) -> f64 {
+    let mut least = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let (start, mut runs) = (Instant::now(), 0_u32);
+        while start.elapsed().as_secs_f64() < SPAN {
+            run();
+            runs += 1;
+        }
+        least = least.min(start.elapsed().as_secs_f64() / f64::from(runs));
+    }
+    least
+}
+
+/// Row of the accelerations of a mechanism at its start: factors without zeros, and M and all rows as they are.
+fn factors<S, const N: usize, const M: usize>(name: &str) -> String
+where
+    S: Dynamic<f64, N, M> + Default,
+{
+    let mechanism = S::default();
+    let parameters = mechanism.parameters();
+    let q = mechanism.guess(&parameters);
+    let position = mechanism.position(&parameters, &q, 0.0);
+    let metric = Metric::next_to(&mechanism, &parameters, 0.0, &q);
+    let (force, gamma) = ([1.0; N], [0.5; M]);
+    let sparse = || {
+        let (partition, _) = mechanism.partition(&parameters, &position);
+        mechanism.accelerations(&parameters, &position, &partition, &force, &gamma).qdd
+    };
+    let dense = || {
+        let mass = mechanism.mass(&parameters, &position);
+        let phi_q = mechanism.phi_q(&parameters, &position);
+        let system = System::new(&mass, &phi_q, &metric);
+        system.factorize(S::COORDINATES, 0.0).expect("regular").solve(&force, &gamma).0
+    };
+    let far = sparse().iter().zip(dense()).map(|(a, b)| (a - b).abs() / b.abs().max(1.0));
+    assert!(far.fold(0.0, f64::max) < 1e-8, "the same accelerations first");
+    let [sparse, dense] = [least(|| drop(black_box(sparse()))), least(|| drop(black_box(dense())))];
+    format!("| {name} | {:.4} | {:.3} | {:.0} |\n", 1e3 * sparse, 1e3 * dense, dense / sparse)
+}
+
+/// Begin of the second table.
+const FACTORS: &str = "
+Texts with many independent coordinates have factors of M and all rows without their zeros. The next table has the time of accelerations
+and multipliers at one position, with these factors and by M and all rows as they are.
+
+| text | without zeros, ms | all rows, ms | ratio |
+|---|---|---|---|
+";
+
 /// Begin of the written page.
 const HEAD: &str = "# Formulations against each other
 
@@ -201,6 +269,13 @@ fn main() -> ExitCode {
     problem::<mechanisms::governor::Governor, 16, 12>(rows, "governor", 0.1, asked);
     problem::<Plate, 6, 6>(rows, "redundant_loop", 3.0, asked);
     problem::<Twin, 4, 4>(rows, "redundant_row", 3.0, asked);
+    if asked.is_none_or(|asked| asked == "chain") {
+        let measured =
+            Builder::new().stack_size(STACK).spawn(|| factors::<Chain, 400, 200>("chain of 200 links"));
+        let row = measured.expect("a thread").join().expect("no panic");
+        print!("{FACTORS}{row}");
+        *rows += &format!("{FACTORS}{row}");
+    }
     if arguments.iter().any(|argument| argument == "--docs") {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/formulations.md");
         if let Err(error) = fs::write(&file, &table) {

@@ -9,6 +9,7 @@ pub mod mobility;
 mod partition;
 pub mod pivots;
 mod polynomial;
+pub mod sparse;
 mod surplus;
 mod triangular;
 

@@ -409,6 +409,9 @@ pub trait Partitioned<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N
     /// `true` if each independent coordinate has a mass of its own: none is in a row, and no entry of M couples one with any other
     /// coordinate.
     const IS_UNCOUPLED: bool = false;
+    /// `true` if a partition has factors of M and all rows without their zeros too: texts with so many independent coordinates that their
+    /// motions cost many times as much. [`accelerations`](Self::accelerations) then uses these.
+    const IS_SPARSE: bool = false;
 
     /// Solves Φ(q, t) = 0 for the dependent coordinates; the independent ones of `q` (N) stay as they are.
     fn solve_dependent<S: BlockSolver<T>>(
@@ -424,6 +427,18 @@ pub trait Partitioned<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N
         parameters: &Self::Parameters,
         position: &Self::Position,
     ) -> (Self::Partition, Margin<T>);
+    /// Margin of M and all rows, of a partition that has factors of them without their zeros ([`IS_SPARSE`](Self::IS_SPARSE)): 0 where
+    /// these are of no use, at most 1.
+    #[inline(always)]
+    fn margin_of_rows(_partition: &Self::Partition) -> T {
+        T::constant(0.0)
+    }
+    /// q̈ (N) and λ (M) by those factors, for a force (N) and γ (M).
+    #[inline(always)]
+    fn solve_by_rows(_partition: &Self::Partition, _force: &[T; N], _gamma: &[T; M]) -> Transformed<T, N, M> {
+        let zero = T::constant(0.0);
+        Transformed { qdd: [zero; N], lambda: [zero; M], inert: false }
+    }
     /// Completes `x` (N), whose independent entries are given, so that Φ_q x = b (M).
     fn complete(&self, partition: &Self::Partition, b: &[T; M], x: &mut [T; N]);
     /// Adds to `y` (N) at the independent coordinates the part of its dependent entries, y_i − Gᵀ y_d with

@@ -186,9 +186,17 @@ impl Work<'_> {
             None => card.duration(equations.as_ref())?,
         };
         let own = Own { make: *make, equations: equations.as_ref() };
+        let (mut methods, mut seeds) = (self.methods.to_vec(), self.seeds.to_vec());
+        if let Some(few) = &description.few {
+            methods.retain(|method| few.methods.contains(&method.to_string()));
+            // A seed that is asked for by itself is run.
+            if seeds.len() > 1 {
+                seeds.retain(|seed| few.seeds.contains(seed));
+            }
+        }
         let extent = Extent {
-            methods: self.methods.to_vec(),
-            seeds: self.seeds.to_vec(),
+            methods: methods.clone(),
+            seeds,
             in_turn: self.in_turn.then_some(index),
             until,
             description: Some(description.clone()),
@@ -196,10 +204,13 @@ impl Work<'_> {
         // What is run does not depend on the machine.
         let found = studied(&own, &extent, &Clock::of(WHOLE), &mut progress);
         self.bar.inc(1000_u64.saturating_sub(done));
-        let found = found.unwrap_or_else(|reason| not_moved(self.methods, reason));
+        let found = found.unwrap_or_else(|reason| not_moved(&methods, reason));
         let mut left_out = Vec::new();
         if found.not_run > 0 {
             left_out.push(format!("{}: {} variants, for which there was no time", case.name, found.not_run));
+        }
+        if let Some(few) = &description.few {
+            left_out.push(format!("{}: all but {}: {}", case.name, few.words(), few.why));
         }
         left_out.extend(description.outside.iter().map(|outside| {
             let all = |names: &[String], whole: &str| {

@@ -172,6 +172,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Partitioned<f64, N, 
     const IS_PARTITIONED: bool = S::IS_PARTITIONED;
     const INDEPENDENT: &'static [u16] = S::INDEPENDENT;
     const IS_UNCOUPLED: bool = S::IS_UNCOUPLED;
+    const IS_SPARSE: bool = S::IS_SPARSE;
 
     fn solve_dependent<B: BlockSolver<f64>>(
         &self,
@@ -181,6 +182,12 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Partitioned<f64, N, 
         solver: &mut B,
     ) -> [Outcome; 1] {
         self.mechanism.solve_dependent(parameters, q, t, solver)
+    }
+    fn margin_of_rows(partition: &S::Partition) -> f64 {
+        S::margin_of_rows(partition)
+    }
+    fn solve_by_rows(partition: &S::Partition, force: &[f64; N], gamma: &[f64; M]) -> Transformed<f64, N, M> {
+        S::solve_by_rows(partition, force, gamma)
     }
     forward! {
         fn partition(self, parameters: &S::Parameters, position: &S::Position) -> (S::Partition, Margin<f64>);

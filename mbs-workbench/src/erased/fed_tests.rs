@@ -88,7 +88,7 @@ fn assert_constants<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(_: S)
             );)*
         };
     }
-    same!(Partitioned: IS_PARTITIONED, INDEPENDENT, IS_UNCOUPLED);
+    same!(Partitioned: IS_PARTITIONED, INDEPENDENT, IS_UNCOUPLED, IS_SPARSE);
     same!(Dynamic: FORCE_USES_MULTIPLIERS, STARTED, STARTED_RATES, STATES, FORCES, LOADS, CONTACTS, NON_NEGATIVE);
     assert_eq!(
         <Fed<S> as Dynamic<f64, N, M>>::MISSING_SLOPE.is_some(),

@@ -18,6 +18,7 @@ use crate::emit::rust::motion;
 use crate::emit::rust::phases;
 use crate::emit::rust::scope::{Scope, Written, number};
 use crate::emit::rust::signals;
+use crate::emit::rust::sparse::Sparse;
 use crate::emit::rust::work;
 use crate::equations::Equations;
 use crate::equations::continuity::{self, Demand};
@@ -88,6 +89,8 @@ pub struct Bodies {
     pub independent: Vec<u16>,
     /// `true` if each of them has a mass of its own.
     pub is_uncoupled: bool,
+    /// Factors of M and all rows without their zeros, where they save much.
+    pub sparse: Option<Sparse>,
     pub complete: TokenStream,
     pub reduce: TokenStream,
     /// Masses and forces, where the text has any.
@@ -170,6 +173,7 @@ pub fn bodies(
         }
     };
     let entries: Vec<(usize, usize, NodeId)> = entries(equations).collect();
+    let is_uncoupled = is_uncoupled(equations, independent);
     Bodies {
         kept_parameters: program.parameters.fields.len(),
         contacts,
@@ -223,7 +227,10 @@ pub fn bodies(
         factorize: block(&linear.factorize, runtime),
         solve_linear: block(&linear.solve, runtime),
         work: work::work(model, equations, program, entries.len(), runtime),
-        is_uncoupled: is_uncoupled(equations, independent),
+        is_uncoupled,
+        sparse: (!is_uncoupled)
+            .then(|| Sparse::of(equations, structure, program, (&scope, is_long), runtime))
+            .flatten(),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
         complete: block(&linear.complete, runtime),
         reduce: block(&linear.reduce, runtime),

@@ -1,6 +1,6 @@
 //! Baumgarte's stabilisation: the constraints as damped oscillators.
 
-use crate::dynamics::formulations::unstabilized::{factorize, solve};
+use crate::dynamics::formulations::unstabilized::solve_together;
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::metric::require_least;
 use crate::dynamics::model::{Counts, Formulation, MethodWarning, Model, Solved};
@@ -47,18 +47,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let position = model.position(t, y);
-        let factors = factorize(model, t, &position, counts)?;
         let (mechanism, parameters) = (model.mechanism, model.parameters);
-        let mut gamma = mechanism.gamma(parameters, &position, &y.qd);
-        let phi = mechanism.phi(parameters, &position);
-        let phi_d = model.constraint_rates(&position, &y.qd);
         let damping = R::constant(2.0 * self.xi * self.omega);
         let stiffness = R::constant(self.omega * self.omega);
-        for ((right, residual), rate) in gamma.iter_mut().zip(&phi).zip(&phi_d) {
-            *right = *right - damping * *rate - stiffness * *residual;
-        }
-        solve(model, (t, y), &position, lambda, &factors, &gamma)
+        let right = |position: &S::Position| {
+            let mut gamma = mechanism.gamma(parameters, position, &y.qd);
+            let phi = mechanism.phi(parameters, position);
+            let phi_d = model.constraint_rates(position, &y.qd);
+            for ((right, residual), rate) in gamma.iter_mut().zip(&phi).zip(&phi_d) {
+                *right = *right - damping * *rate - stiffness * *residual;
+            }
+            gamma
+        };
+        solve_together(model, (t, y), lambda, right, counts)
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {

@@ -25,7 +25,7 @@ pub(crate) type PlaceOf<S, R, const N: usize, const M: usize> =
     Place<<S as Mechanism<R, N, M>>::Position, <S as Partitioned<R, N, M>>::Partition, R>;
 
 impl<P, F, R: Real> Place<P, F, R> {
-    /// `true` if the independent coordinates determine the others well.
+    /// `true` if the independent coordinates determine the others well, or sparse factors of all rows are well conditioned.
     #[inline(always)]
     pub(crate) fn is_regular(&self) -> bool {
         singular::ZONE_OF_FORCES.of::<R>().less(self.margin)
@@ -47,7 +47,12 @@ pub(crate) fn place<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
 ) -> PlaceOf<S, R, N, M> {
     let position = model.position(t, y);
     let (partition, margin) = model.mechanism.partition(model.parameters, &position);
-    Place { position, partition, margin: margin.value * model.metric.blocks }
+    let margin = if const { S::IS_SPARSE } {
+        S::margin_of_rows(&partition)
+    } else {
+        margin.value * model.metric.blocks
+    };
+    Place { position, partition, margin }
 }
 
 /// Rates and multipliers of a state at a regular place; none where an independent motion has no inertia.
@@ -59,14 +64,27 @@ pub(crate) fn solve<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
     lambda: &[R; M],
     counts: &mut Counts,
 ) -> Result<Option<Solved<R, N, M, S::States>>, Failure> {
+    let gamma = model.mechanism.gamma(model.parameters, &place.position, &y.qd);
+    solve_for(model, (t, y), place, lambda, &gamma, counts)
+}
+
+/// [`solve`] for another right-hand side `gamma` (M) of the rows.
+#[inline(always)]
+pub(crate) fn solve_for<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, y): (R, &IntegratorState<R, N, S::States>),
+    place: &PlaceOf<S, R, N, M>,
+    lambda: &[R; M],
+    gamma: &[R; M],
+    counts: &mut Counts,
+) -> Result<Option<Solved<R, N, M, S::States>>, Failure> {
     counts.evaluations += 1;
     let (mechanism, parameters) = (model.mechanism, model.parameters);
     let Place { position, partition, margin } = place;
-    let gamma = mechanism.gamma(parameters, position, &y.qd);
     let mut inert = true;
     let (qdd, lambda, force) = model.balanced(position, (t, y), lambda, |force, whole| {
         let none = [R::constant(0.0); M];
-        let gamma = if whole { &gamma } else { &none };
+        let gamma = if whole { gamma } else { &none };
         let solved = mechanism.accelerations(parameters, position, partition, force, gamma);
         inert = solved.inert;
         (solved.qdd, solved.lambda)
@@ -74,7 +92,7 @@ pub(crate) fn solve<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
     if !inert {
         return Ok(None);
     }
-    model.check_solved(&qdd, &lambda, &force, &gamma)?;
+    model.check_solved(&qdd, &lambda, &force, gamma)?;
     let rate = model.rates(position, y, qdd, &lambda);
     Ok(Some(Solved { rate, lambda, margin: *margin }))
 }
@@ -156,7 +174,8 @@ fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 /// every independent motion has inertia in every lane. F is N − M, the number of independent coordinates:
 /// [`Partitioned::accelerations`] calls this with it.
 ///
-/// Straight through the blocks: one completion for q̈₀ and one for each motion R of an independent coordinate. Then
+/// A partition that has factors of M and all rows without their zeros is solved with these; then F is 0.
+/// Others straight through the blocks: one completion for q̈₀ and one for each motion R of an independent coordinate. Then
 /// products of those with M, LDLᵀ of RᵀMR, and one substitution for the multipliers.
 #[inline(always)]
 pub fn accelerations<S, T: Scalar, const N: usize, const M: usize, const F: usize>(
@@ -170,6 +189,9 @@ pub fn accelerations<S, T: Scalar, const N: usize, const M: usize, const F: usiz
 where
     S: Dynamic<T, N, M>,
 {
+    if const { S::IS_SPARSE } {
+        return S::solve_by_rows(partition, force, gamma);
+    }
     let (zero, one) = (T::constant(0.0), T::constant(1.0));
     let mut qdd = [zero; N];
     mechanism.complete(partition, gamma, &mut qdd);

@@ -1,5 +1,6 @@
 //! Index 1 with multipliers: accelerations from M q̈ + Φ_qᵀ λ = Q with Φ_q q̈ = γ.
 
+use crate::dynamics::formulations::block_elimination;
 use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
@@ -24,15 +25,38 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let position = model.position(t, y);
-        let factors = factorize(model, t, &position, counts)?;
-        let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-        solve(model, (t, y), &position, lambda, &factors, &gamma)
+        let gamma = |position: &S::Position| model.mechanism.gamma(model.parameters, position, &y.qd);
+        solve_together(model, (t, y), lambda, gamma, counts)
     }
 
     fn leaves_constraints(&self) -> bool {
         true
     }
+}
+
+/// Rates and multipliers at `(t, y)` by M and all rows together, without their zeros where the text has such factors and these are well
+/// conditioned. `right` gives the right-hand side of the rows (M).
+#[inline(always)]
+pub(crate) fn solve_together<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, y): (R, &IntegratorState<R, N, S::States>),
+    lambda: &[R; M],
+    right: impl Fn(&S::Position) -> [R; M],
+    counts: &mut Counts,
+) -> Result<Solved<R, N, M, S::States>, Failure> {
+    if const { S::IS_SPARSE } {
+        let place = block_elimination::place(model, t, y);
+        if place.is_regular() {
+            let gamma = right(place.position());
+            if let Some(solved) = block_elimination::solve_for(model, (t, y), &place, lambda, &gamma, counts)?
+            {
+                return Ok(solved);
+            }
+        }
+    }
+    let position = model.position(t, y);
+    let factors = factorize(model, t, &position, counts)?;
+    solve(model, (t, y), &position, lambda, &factors, &right(&position))
 }
 
 /// The factorised system at a position.

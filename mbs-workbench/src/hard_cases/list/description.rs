@@ -26,6 +26,8 @@ pub struct Description {
     /// `true` for a case that takes minutes.
     #[serde(default)]
     pub long: bool,
+    /// Methods and variants of a case whose runs are dear; without it all that are asked for.
+    pub few: Option<Few>,
     /// Intervals between the instants of a run, 64 without it; of more than 640 the first four of each 64th part are looked at.
     pub instants: Option<u32>,
     /// Largest error of each kind of method, as a part of the size of what is compared. Methods of other kinds are not run.
@@ -44,6 +46,25 @@ pub struct Description {
     /// Methods and variants that may be refused more often than one in twenty.
     #[serde(default)]
     pub outside: Vec<Outside>,
+}
+
+/// Some of the methods and variants.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Few {
+    /// Whole names of the methods that run.
+    pub methods: Vec<String>,
+    /// Seeds of the variants that run.
+    pub seeds: Vec<u64>,
+    /// Reason for leaving out the others.
+    pub why: String,
+}
+
+impl Few {
+    /// Extent in words: `2 variants by 3 methods`.
+    pub fn words(&self) -> String {
+        format!("{} variants by {} methods", self.seeds.len(), self.methods.len())
+    }
 }
 
 /// Kind of a method, by the bound that it can keep.

@@ -42,8 +42,9 @@ fn filled(text: &str) -> String {
 }
 
 fn page(case: &Case) -> String {
-    let Description { title, origin, why, elsewhere, here, bounds, known, tables, refused, outside, .. } =
-        &case.description;
+    let Description {
+        title, origin, why, elsewhere, here, bounds, known, tables, refused, outside, few, ..
+    } = &case.description;
     let mut page = format!("# {title}\n\n`{}`; from {origin}.\n\n", case.name);
     for (head, text) in
         [("Why it is hard", why), ("What fails elsewhere", elsewhere), ("What is done here", here)]
@@ -80,6 +81,10 @@ fn page(case: &Case) -> String {
             let _ = writeln!(page, "| {} | {bound:e} |", kind(*of));
         }
         page.push('\n');
+    }
+    if let Some(few) = few {
+        let text = format!("It has {} alone: {}. {}", few.words(), few.methods.join(", "), few.why);
+        page += &format!("{}\n\n", filled(&text));
     }
     for outside in outside {
         let all = |names: &[String], whole: &str| {

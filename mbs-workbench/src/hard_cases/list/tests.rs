@@ -5,6 +5,7 @@ use crate::hard_cases::oracle::{Oracle, OracleState};
 use crate::hard_cases::similarity::Similarity;
 use crate::hard_cases::variation::{Class, Variation, VariedParts};
 use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::setting::MotionMethod;
 
 const SPRING: &str = "mechanism Spring; coord x: m = 1; body bob { mass: 1, com: [x, 0] } \
                       tsda spring { from: [-1, 0], to: [x, 0], stiffness: 1, length: 1 } out off: m = x - 1m*cos(t/1s);";
@@ -77,6 +78,13 @@ fn every_case_has_a_text_of_its_name_with_bounds_and_known_values() {
             case.name
         );
         assert!(bounds.values().all(|bound| *bound > 0.0), "{}", case.name);
+        for name in case.description.few.iter().flat_map(|few| &few.methods) {
+            assert!(
+                MotionMethod::all().iter().any(|method| method.to_string() == *name),
+                "{}: {name}",
+                case.name
+            );
+        }
         for part in [why, elsewhere, here] {
             assert!(part.len() > 20 && part.split_whitespace().count() < 40, "{}: {part}", case.name);
         }
