@@ -6,6 +6,7 @@
 use core::array::from_fn;
 
 use crate::batch::Batch;
+use crate::block_solvers::fast_newton::PLAIN;
 use crate::kinematics::link_lengths;
 use crate::linear_algebra::vectors::weights;
 use crate::mechanism::{Kinematic, Mechanism};
@@ -82,7 +83,7 @@ where
             all = all & near;
             S::GroupNumber::side_by_side();
         }
-        let trial = FastStep::from_prediction::<S::Group, M, false>(
+        let trial = FastStep::from_prediction::<S::Group, M, PLAIN>(
             (&mechanism, &prepared.parameters),
             &Start { t: from, q: &prediction, qd: &scales, qdd: &scales, margin, weights: &prepared.weights },
             (&prediction, all),

@@ -13,6 +13,7 @@ use crate::batch::groups::Prepared;
 use crate::batch::lane_state::Standing;
 use crate::batch::statistics::Notes;
 use crate::block_solvers::convergence::Statistics;
+use crate::block_solvers::fast_newton::PLAIN;
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::phase::Phase;
 use crate::mechanism::{Kinematic, Mechanism};
@@ -146,7 +147,7 @@ where
     fn together(&mut self, [from, to]: [Lanes<R, L>; 2], t: &[R; L]) -> Option<LaneMask<R, L>> {
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
-        let trial = FastStep::of::<S, M, false>(mechanism, parameters, &start, to, !self.waits);
+        let trial = FastStep::of::<S, M, PLAIN>(mechanism, parameters, &start, to, !self.waits);
         if !Lanes::<R, L>::all(trial.quick) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;

@@ -15,15 +15,26 @@ use crate::scalar::number::Scalar;
 /// being looked at.
 const EVALUATIONS: u32 = 5;
 
+/// Newton's method as it is.
+pub(crate) const PLAIN: u8 = 0;
+
+/// Circles and lines step by second derivatives, in one lane.
+pub(crate) const FAR: u8 = 1;
+
+/// A block that closed takes one step more where its residuals are coarse, in one lane.
+pub(crate) const FINE: u8 = 2;
+
 /// Newton's method without safeguards: no cap, no guard, no other method.
 ///
 /// The caller judges the result. It is a solution in the lanes of [`closed`](Self::closed), but its assembly and its margin were
 /// not checked during the iteration. A lane that does not close stays and delays no other one.
 ///
-/// `FAR`: circles and lines step by second derivatives, in one lane.
-pub(crate) struct FastNewton<T: Scalar, const FAR: bool = false> {
+/// `WAY`: [`PLAIN`], [`FAR`] or [`FINE`].
+pub(crate) struct FastNewton<T: Scalar, const WAY: u8 = PLAIN> {
     /// Lanes in which every block has closed so far.
     pub closed: T::Mask,
+    /// Part of a row's tolerance above which a residual is coarse.
+    finer: Option<T>,
     /// Evaluations of residual and Jacobian, the most of any block and lane.
     pub evaluations: u32,
     /// Those of each lane until it closed, where there are several.
@@ -36,12 +47,27 @@ pub(crate) struct FastNewton<T: Scalar, const FAR: bool = false> {
     pub row_alone: u16,
 }
 
-impl<T: Scalar, const FAR: bool> FastNewton<T, FAR> {
+impl<T: Scalar, const WAY: u8> FastNewton<T, WAY> {
     /// Before the first block; lanes outside `lanes` are left as they are and cost nothing.
     #[inline(always)]
     pub fn new(lanes: T::Mask) -> Self {
         let zero = T::constant(0.0);
-        FastNewton { closed: lanes, evaluations: 0, counts: zero, ratio: zero, row: zero, row_alone: 0 }
+        let finer = None;
+        FastNewton {
+            closed: lanes,
+            finer,
+            evaluations: 0,
+            counts: zero,
+            ratio: zero,
+            row: zero,
+            row_alone: 0,
+        }
+    }
+
+    /// As [`new`](Self::new); residuals above `finer` of their tolerance are coarse.
+    #[inline(always)]
+    pub fn finer(lanes: T::Mask, finer: Option<T>) -> Self {
+        FastNewton { finer, ..FastNewton::new(lanes) }
     }
 
     /// Takes up one more block; `weights`: reciprocals of the tolerances.
@@ -116,16 +142,25 @@ impl<T: Scalar, const FAR: bool> FastNewton<T, FAR> {
     ) -> [T; K] {
         let own = block.row_scales.map(own_rounding);
         let (mut residuals, mut jacobian) = evaluate(&x);
-        let mut evaluations = 1;
-        while !all_within(&residuals, &own) {
-            if evaluations > 1 {
+        let (mut evaluations, mut is_fine) = (1, false);
+        loop {
+            if all_within(&residuals, &own) {
+                if const { WAY != FINE } || is_fine {
+                    break;
+                }
+                let Some(part) = self.finer else { break };
+                is_fine = true;
+                if all_within(&residuals, &own.map(|tolerance| part * tolerance)) {
+                    break;
+                }
+            } else if evaluations > 1 {
                 let (ratio, row) = worst_granted(residuals, block.row_scales, x, jacobian, block.rows);
                 if T::all(ratio.less(T::constant(1.0))) {
                     self.evaluations = self.evaluations.max(evaluations);
                     self.take(ratio, row);
                     return x;
                 }
-                if evaluations == EVALUATIONS {
+                if evaluations >= EVALUATIONS {
                     self.closed = T::mask(false);
                     break;
                 }
@@ -147,9 +182,9 @@ impl<T: Scalar, const FAR: bool> FastNewton<T, FAR> {
     }
 }
 
-impl<T: Scalar, const FAR: bool> BlockSolver<T> for FastNewton<T, FAR> {
+impl<T: Scalar, const WAY: u8> BlockSolver<T> for FastNewton<T, WAY> {
     const INLINED_PER_BLOCK: bool = true;
-    const SECOND_ORDER: bool = FAR && T::LANES == 1;
+    const SECOND_ORDER: bool = WAY == FAR && T::LANES == 1;
 
     #[inline(always)]
     fn solve<const K: usize, F: Factorization<T, K>>(

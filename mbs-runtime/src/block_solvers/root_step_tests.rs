@@ -1,7 +1,7 @@
 //! Orders of the steps, and what they save on dyads.
 
 use super::*;
-use crate::block_solvers::fast_newton::FastNewton;
+use crate::block_solvers::fast_newton::{FAR, FINE, FastNewton};
 use crate::linear_algebra::direct2::Direct2;
 use crate::mechanism::block::BlockSolver;
 use crate::scalar::lanes::Lanes;
@@ -72,7 +72,7 @@ fn dyads_close_in_two_evaluations_where_newtons_method_takes_three() {
     for near in [[0.4, 0.6], [0.6, -0.4]] {
         let end = root(circles::<f64>, near);
         let start = [end[0] + 6e-6, end[1] - 8e-6];
-        let (mut straight, mut to_root) = (FastNewton::<_>::new(true), FastNewton::<f64, true>::new(true));
+        let (mut straight, mut to_root) = (FastNewton::<_>::new(true), FastNewton::<f64, FAR>::new(true));
         let (x, _) = straight.solve::<2, Direct2<f64>>(&block(), start, circles);
         let (y, _) = to_root.solve_round::<2, Direct2<f64>>(&block(), start, circles, &SECOND);
         assert!(straight.closed && to_root.closed);
@@ -82,13 +82,37 @@ fn dyads_close_in_two_evaluations_where_newtons_method_takes_three() {
 }
 
 #[test]
+fn a_residual_above_the_part_of_its_tolerance_takes_one_step_more() {
+    // 5e-8 of a link from the root Newton's method closes with a residual within the tolerance, but above rounding.
+    for near in [[0.4, 0.6], [0.6, -0.4]] {
+        let end = root(circles::<f64>, near);
+        let start = [end[0] + 3e-8, end[1] - 4e-8];
+        let (mut coarse, mut fine) =
+            (FastNewton::<_>::new(true), FastNewton::<f64, FINE>::finer(true, Some(0.1)));
+        let _ = coarse.solve::<2, Direct2<f64>>(&block(), start, circles);
+        let (x, _) = fine.solve::<2, Direct2<f64>>(&block(), start, circles);
+        assert!(coarse.closed && fine.closed && 0.1 < coarse.ratio && fine.ratio <= 0.1);
+        assert_eq!([coarse.evaluations, fine.evaluations], [2, 3]);
+        assert!((0..2).all(|k| (x[k] - end[k]).abs() < 1e-15), "{x:?} {end:?}");
+        // One that is rounding alone is left as it is.
+        let mut again = FastNewton::<f64, FINE>::finer(true, Some(0.1));
+        let _ = again.solve::<2, Direct2<f64>>(&block(), x, circles);
+        assert_eq!([again.evaluations, fine.evaluations], [1, 3]);
+        // A part that no residual can be within ends after that step.
+        let mut never = FastNewton::<f64, FINE>::finer(true, Some(0.0));
+        let _ = never.solve::<2, Direct2<f64>>(&block(), start, circles);
+        assert!(never.closed && never.evaluations == 3);
+    }
+}
+
+#[test]
 fn second_derivatives_are_for_single_numbers_far_from_their_root() {
     const fn asked<S: BlockSolver<T>, T: Scalar>() -> bool {
         S::SECOND_ORDER
     }
-    assert!(asked::<FastNewton<f64, true>, f64>());
+    assert!(asked::<FastNewton<f64, FAR>, f64>());
     assert!(!asked::<FastNewton<f64>, f64>());
-    assert!(!asked::<FastNewton<Lanes<f64, 4>, true>, Lanes<f64, 4>>());
+    assert!(!asked::<FastNewton<Lanes<f64, 4>, FAR>, Lanes<f64, 4>>());
 }
 
 #[test]
@@ -97,7 +121,7 @@ fn circles_that_do_not_meet_do_not_close() {
         let (residuals, jacobian) = circles(x);
         ([residuals[0] + 0.48, residuals[1]], jacobian)
     };
-    let mut solver = FastNewton::<f64, true>::new(true);
+    let mut solver = FastNewton::<f64, FAR>::new(true);
     let _ = solver.solve_round::<2, Direct2<f64>>(&block(), [0.3, 0.1], apart, &SECOND);
     assert!(!solver.closed);
 }

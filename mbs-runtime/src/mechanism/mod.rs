@@ -340,6 +340,8 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
     const BLOCK_BY_BLOCK: bool = false;
     /// `true` if dyads are circles and lines, whose second derivatives a step takes: [`BlockSolver::solve_round`].
     const HAS_CIRCLES: bool = false;
+    /// `true` if [`solve_motion`](Self::solve_motion) eliminates a block in an order of its own, which may ask for pivoting instead.
+    const HAS_ORDERS: bool = false;
 
     /// The designs in the lanes from `first` on.
     fn group(&self, first: usize) -> Self::Group;

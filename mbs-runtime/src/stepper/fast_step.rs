@@ -3,7 +3,7 @@
 use core::array::from_fn;
 
 use crate::block_solvers::convergence::Statistics;
-use crate::block_solvers::fast_newton::FastNewton;
+use crate::block_solvers::fast_newton::{FINE, FastNewton};
 use crate::kinematics::homotopy::LARGEST_SECOND_ORDER_TERM;
 use crate::kinematics::link_lengths;
 use crate::linear_algebra::parts::at;
@@ -11,7 +11,7 @@ use crate::mechanism::margin::Margin;
 use crate::mechanism::{Kinematic, negated};
 use crate::scalar::lanes::REGISTER;
 use crate::scalar::number::{Real, Scalar, index};
-use crate::stepper::instant::is_coarse;
+use crate::stepper::instant::{coarse_from, is_coarse};
 use crate::tolerances::{positions, singular};
 
 /// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
@@ -79,9 +79,9 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
     ///
     /// Not plain is a step from or into the singular zone, one too long to be foreseen, and one that does not converge or is not
     /// finite. Nor is one that ends so far from the prediction that it may be in another assembly, violates a branch or leaves a
-    /// limit, nor any outside `lanes`. A passage is plain here. `FAR`: see [`FastNewton`].
+    /// limit, nor any outside `lanes`. A passage is plain here. `WAY`: see [`FastNewton`].
     #[inline(always)]
-    pub(crate) fn of<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
+    pub(crate) fn of<S: Kinematic<T, N, M>, const M: usize, const WAY: u8>(
         mechanism: &S,
         parameters: &S::Parameters,
         start: &Start<'_, T, N>,
@@ -91,12 +91,12 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         let scales = mechanism.coordinate_scales(parameters);
         let [most_second, _] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let (prediction, foreseen) = start.predicted(t, &scales, most_second);
-        Self::from_prediction::<S, M, FAR>((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
+        Self::from_prediction::<S, M, WAY>((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
     }
 
     /// The step from its prediction, and the lanes where its second-order term is small. Of `start` margin and weights are read alone.
     #[inline(always)]
-    pub(crate) fn from_prediction<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
+    pub(crate) fn from_prediction<S: Kinematic<T, N, M>, const M: usize, const WAY: u8>(
         (mechanism, parameters): (&S, &S::Parameters),
         start: &Start<'_, T, N>,
         (prediction, foreseen): (&[T; N], T::Mask),
@@ -108,12 +108,13 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         // Block after block, rates keep a processor busy that waits for the next position. More lanes than fill a register do so as
         // they are, and a compiler sees them together in short stages. Each way is judged where it ends: what both had to put down for
         // one judge would be copied.
-        if S::BLOCK_BY_BLOCK && (T::LANES == 1 || size_of::<T>() <= REGISTER) {
+        if const { S::BLOCK_BY_BLOCK && (T::LANES == 1 || size_of::<T>() <= REGISTER) } {
             let zeros = [T::constant(0.0); N];
-            let (mut motion, mut solver) = ([*prediction, zeros, zeros], FastNewton::<T, FAR>::new(lanes));
+            let (mut motion, mut solver) =
+                ([*prediction, zeros, zeros], FastNewton::<T, WAY>::finer(lanes, start.finer::<WAY>()));
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
             // No way leads to other code in one lane: what it needed would be put down for it.
-            if T::LANES == 1 || T::all(solved.ordered | !lanes) {
+            if const { T::LANES == 1 || !S::HAS_ORDERS } || T::all(solved.ordered | !lanes) {
                 let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
                 let judge = Judge { mechanism, parameters, start, prediction, foreseen, most_way, solver };
                 let mut step = judge.judged(motion, (&solved.position, &solved.margin), sum);
@@ -124,7 +125,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
             }
             // The addresses of copies.
             let (prediction, t, foreseen) = (*prediction, t, foreseen);
-            return Self::by_stages::<S, M, FAR>(
+            return Self::by_stages::<S, M, WAY>(
                 (mechanism, parameters),
                 start,
                 (&prediction, foreseen),
@@ -132,25 +133,25 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
                 lanes,
             );
         }
-        Self::in_stages::<S, M, FAR>((mechanism, parameters), start, (prediction, foreseen), t, lanes)
+        Self::in_stages::<S, M, WAY>((mechanism, parameters), start, (prediction, foreseen), t, lanes)
     }
 
     /// [`in_stages`](Self::in_stages), out of the way.
     #[cold]
     #[inline(never)]
-    fn by_stages<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
+    fn by_stages<S: Kinematic<T, N, M>, const M: usize, const WAY: u8>(
         mechanism: (&S, &S::Parameters),
         start: &Start<'_, T, N>,
         prediction: (&[T; N], T::Mask),
         t: &T,
         lanes: T::Mask,
     ) -> Self {
-        Self::in_stages::<S, M, FAR>(mechanism, start, prediction, *t, lanes)
+        Self::in_stages::<S, M, WAY>(mechanism, start, prediction, *t, lanes)
     }
 
     /// The step from its prediction, all positions before all rates; with pivoting where a block asks for it.
     #[inline(always)]
-    pub(crate) fn in_stages<S: Kinematic<T, N, M>, const M: usize, const FAR: bool>(
+    pub(crate) fn in_stages<S: Kinematic<T, N, M>, const M: usize, const WAY: u8>(
         (mechanism, parameters): (&S, &S::Parameters),
         start: &Start<'_, T, N>,
         (prediction, foreseen): (&[T; N], T::Mask),
@@ -159,7 +160,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
     ) -> Self {
         let [_, most_way] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let most_way = T::constant(most_way);
-        let (mut q, mut solver) = (*prediction, FastNewton::<T, FAR>::new(lanes));
+        let (mut q, mut solver) = (*prediction, FastNewton::<T, WAY>::finer(lanes, start.finer::<WAY>()));
         // By reference: what is long would be moved out of the pairs.
         let (_, position) = &mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
         let (factors, margin) = &mechanism.factorize(parameters, position);
@@ -197,7 +198,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
 }
 
 /// Data by which a step is judged.
-struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize, const FAR: bool> {
+struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize, const WAY: u8> {
     mechanism: &'a S,
     parameters: &'a S::Parameters,
     start: &'a Start<'a, T, N>,
@@ -206,11 +207,11 @@ struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usiz
     foreseen: T::Mask,
     /// Largest distance from the prediction, over the margin, that needs no further test.
     most_way: T,
-    solver: FastNewton<T, FAR>,
+    solver: FastNewton<T, WAY>,
 }
 
-impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize, const FAR: bool>
-    Judge<'_, S, T, N, M, FAR>
+impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize, const WAY: u8>
+    Judge<'_, S, T, N, M, WAY>
 {
     /// The step that ends at `motion` (q, q̇, q̈), with its tests; `sum`: finite where rates and factors are.
     #[inline(always)]
@@ -269,6 +270,17 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
     #[inline(always)]
     pub(super) fn rates(&self) -> [&'a [T; N]; 3] {
         [self.q, self.qd, self.qdd]
+    }
+
+    /// Part of a row's tolerance within which a single step must close, where the whole tolerance would be seen in its accelerations.
+    /// The margin at its end, by which it is judged, may be a tenth less.
+    #[inline(always)]
+    fn finer<const WAY: u8>(&self) -> Option<T> {
+        if const { WAY != FINE || T::LANES > 1 } {
+            return None;
+        }
+        let part = coarse_from(T::constant(0.9) * self.margin);
+        T::all(part.less(T::constant(1.0))).then_some(part)
     }
 
     /// q + h q̇ + h²/2 q̈, and the lanes in which the last term is less than `most` reference lengths (or rad).

@@ -17,7 +17,13 @@ use crate::tolerances::{positions, singular};
 /// `true` if a residual of `ratio` tolerances is seen in the accelerations at such a `margin`.
 #[inline(always)]
 pub(crate) fn is_coarse<T: Scalar>(ratio: T, margin: T) -> T::Mask {
-    (positions::COARSE.of::<T>() * margin * margin * margin).max(positions::FINE.of()).less(ratio)
+    coarse_from(margin).less(ratio)
+}
+
+/// Residual over its tolerance from which on it is seen in the accelerations at such a `margin`.
+#[inline(always)]
+pub(crate) fn coarse_from<T: Scalar>(margin: T) -> T {
+    (positions::COARSE.of::<T>() * margin * margin * margin).max(positions::FINE.of())
 }
 
 /// Position found by a solver.

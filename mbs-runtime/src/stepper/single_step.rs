@@ -1,6 +1,7 @@
 //! One step from the prediction: taken where its assembly is certain, else along the homotopy.
 
 use crate::block_solvers::convergence::Statistics;
+use crate::block_solvers::fast_newton::{FAR, FINE, PLAIN};
 use crate::failure::Failure;
 use crate::kinematics::homotopy::{EVALUATIONS, Homotopy, Prediction, is_near};
 use crate::kinematics::link_lengths;
@@ -30,31 +31,40 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         {
             return self.advanced_far(t, phases);
         }
-        self.advanced_by::<false>(t, phases)
+        if self.state.margin < positions::SEEN.of() {
+            return self.advanced_finely(t, phases);
+        }
+        self.advanced_by::<PLAIN>(t, phases)
     }
 
     /// [`advanced`](Self::advanced) to a position so far from its prediction that circles and lines step by second derivatives.
     #[inline(never)]
     fn advanced_far(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
-        self.advanced_by::<true>(t, phases)
+        self.advanced_by::<FAR>(t, phases)
+    }
+
+    /// [`advanced`](Self::advanced) at a margin so small that a residual within its tolerance is seen in the accelerations.
+    #[inline(never)]
+    fn advanced_finely(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
+        self.advanced_by::<FINE>(t, phases)
     }
 
     #[inline(always)]
-    fn advanced_by<const FAR: bool>(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
+    fn advanced_by<const WAY: u8>(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
         // Rows that may contradict each other are always looked at.
         if const { M == N } && self.is_ready() && !self.waits() {
             let StepperState { q, qd, qdd, margin, .. } = &self.state;
             let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
             let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
             let trial =
-                FastStep::of::<S, M, FAR>(&self.mechanism, &self.parameters, &start, t, R::mask(true));
+                FastStep::of::<S, M, WAY>(&self.mechanism, &self.parameters, &start, t, R::mask(true));
             // The homotopy decides what a passage leads to.
             if trial.orientation(0) == self.state.orientation {
                 if trial.quick && !self.may_have_folded() {
                     self.changed = false;
                     return Ok(self.state.follow(&trial, t));
                 }
-                if const { !S::BLOCK_BY_BLOCK } || trial.ordered {
+                if const { !S::HAS_ORDERS } || trial.ordered {
                     // The address of a copy, so that the trial itself stays in registers.
                     let looked_at = trial;
                     if let Some(statistics) = self.looked_at(&looked_at, t, phases) {
@@ -62,8 +72,11 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
                     }
                 }
             }
-            if const { S::BLOCK_BY_BLOCK } && !trial.ordered {
-                return self.advanced_in_stages::<FAR>(t, phases);
+            if const { S::HAS_ORDERS } && !trial.ordered {
+                if const { WAY == FAR } {
+                    return self.advanced_in_stages::<FAR>(t, phases);
+                }
+                return self.advanced_in_stages::<FINE>(t, phases);
             }
         }
         self.advanced_with_care(t, phases)
@@ -72,18 +85,14 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// [`advanced_by`](Self::advanced_by) where blocks need pivoting.
     #[cold]
     #[inline(never)]
-    fn advanced_in_stages<const FAR: bool>(
-        &mut self,
-        t: R,
-        phases: S::Phases,
-    ) -> Result<Statistics, Failure> {
+    fn advanced_in_stages<const WAY: u8>(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let (StepperState { q, qd, qdd, margin, .. }, weights) = (&self.state, &weights(&scales));
         let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
         let [most_second, _] = quick::<R>(const { link_lengths::any(S::COORDINATES) });
         let (prediction, foreseen) = start.predicted(t, &scales, most_second);
         let (mechanism, prediction) = ((&self.mechanism, &self.parameters), (&prediction, foreseen));
-        let trial = FastStep::in_stages::<S, M, FAR>(mechanism, &start, prediction, t, R::mask(true));
+        let trial = FastStep::in_stages::<S, M, WAY>(mechanism, &start, prediction, t, R::mask(true));
         if trial.orientation(0) == self.state.orientation {
             if trial.quick && !self.may_have_folded() {
                 self.changed = false;

@@ -49,6 +49,9 @@ pub(crate) const LEFT: Law = Law::fixed(1e-3);
 /// above margins of 0.24 no step is looked at twice. Below 0.1 [`FINE`] decides.
 pub(crate) const COARSE: Law = Law::fixed(70.0);
 
+/// Margin below which a step may end at one where [`COARSE`] is less than 1: 0.24 over 0.9.
+pub(crate) const SEEN: Law = Law::fixed(0.27);
+
 /// Largest residual over its tolerance that is rounding alone: 4 of 64 roundings. A further step does not lower it.
 pub(crate) const FINE: Law = Law::fixed(0.0625);
 

@@ -15,6 +15,7 @@ const VALUES: &[(&str, Law, f64, f32)] = &[
     ("start", positions::OF_START, 1e-8, 64.0 * SINGLE),
     ("left", positions::LEFT, 1e-3, 1e-3),
     ("coarse", positions::COARSE, 70.0, 70.0),
+    ("seen", positions::SEEN, 0.27, 0.27),
     ("fine", positions::FINE, 0.0625, 0.0625),
     ("quick approach", positions::QUICK_APPROACH, 1e-5, 2e3 * SINGLE),
     ("least movement", positions::LEAST_MOVEMENT, 1e-5, 1e3 * SINGLE),

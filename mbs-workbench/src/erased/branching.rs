@@ -144,6 +144,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, 
 
     const BLOCK_BY_BLOCK: bool = S::BLOCK_BY_BLOCK;
     const HAS_CIRCLES: bool = S::HAS_CIRCLES;
+    const HAS_ORDERS: bool = S::HAS_ORDERS;
 
     fn group(&self, _: usize) -> Self {
         self.clone()
@@ -325,6 +326,7 @@ mod tests {
         assert_eq!(<Branching<S> as Mechanism<f64, N, M>>::HAS_SIGNALS, S::HAS_SIGNALS);
         assert_eq!(<Branching<S> as Kinematic<f64, N, M>>::BLOCK_BY_BLOCK, S::BLOCK_BY_BLOCK);
         assert_eq!(<Branching<S> as Kinematic<f64, N, M>>::HAS_CIRCLES, S::HAS_CIRCLES);
+        assert_eq!(<Branching<S> as Kinematic<f64, N, M>>::HAS_ORDERS, S::HAS_ORDERS);
     }
 
     #[test]

@@ -128,6 +128,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, 
 
     const BLOCK_BY_BLOCK: bool = S::BLOCK_BY_BLOCK;
     const HAS_CIRCLES: bool = S::HAS_CIRCLES;
+    const HAS_ORDERS: bool = S::HAS_ORDERS;
 
     fn group(&self, _: usize) -> Self {
         self.clone()

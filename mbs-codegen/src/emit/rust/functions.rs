@@ -77,6 +77,8 @@ pub struct Bodies {
     pub solve_motion: Option<TokenStream>,
     /// `true` if a step takes second derivatives of dyads of circles and lines.
     pub has_circles: bool,
+    /// `true` if blocks are eliminated in orders of their own.
+    pub has_orders: bool,
     /// Functions of bounded length that a long solution calls.
     pub methods: TokenStream,
     /// Those that other long functions call.
@@ -215,6 +217,7 @@ pub fn bodies(
         phases: tokens(&phases, runtime),
         speeds: tokens(&speeds, runtime),
         outputs: block(&(given + &outputs_text), runtime),
+        has_orders: !eliminations.types.is_empty(),
         factors: tokens(&(eliminations.types + &linear.factors), runtime),
         short: program.length() <= LONGEST_INLINED,
         factorizes_in_line: long::newton_blocks(program) <= lengths.factors,

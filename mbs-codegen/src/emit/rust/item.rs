@@ -330,6 +330,8 @@ fn kinematic(
         solve_motion.as_ref().map(|_| quote! { const BLOCK_BY_BLOCK: ::core::primitive::bool = true; });
     let has_circles =
         bodies.has_circles.then(|| quote! { const HAS_CIRCLES: ::core::primitive::bool = true; });
+    let has_orders = (bodies.has_orders && solve_motion.is_some())
+        .then(|| quote! { const HAS_ORDERS: ::core::primitive::bool = true; });
     quote! {
         impl<#generics> #runtime::WorstCase for #name {
             const WORK: #runtime::Work = #work;
@@ -338,6 +340,7 @@ fn kinematic(
             type Factors = __Factors<T>;
             #block_by_block
             #has_circles
+            #has_orders
             #group
             #[inline]
             fn solve_blocks<__S: #runtime::BlockSolver<T>>(
