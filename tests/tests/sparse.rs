@@ -135,7 +135,7 @@ fn lanes_are_solved_as_single_numbers() {
 /// A run of the chain.
 type Run<F> = Simulation<Chain<f64>, Explicit<DormandPrince8, F>, f64, 48, 24>;
 
-/// What `see` finds in a run of the chain at `end` (s).
+/// Result of `see` of a run of the chain at `end` (s).
 fn fallen<F, X>(chain: Chain<f64>, formulation: F, end: f64, see: fn(&Run<F>) -> X) -> X
 where
     F: Formulation<Chain<f64>, f64, 48, 24> + Send + 'static,

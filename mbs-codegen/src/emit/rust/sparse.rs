@@ -10,7 +10,7 @@ use crate::program::Program;
 use crate::structure::Structure;
 use crate::structure::sparse::{SparseOrder, order};
 
-/// What the emitted functions of a partition with sparse factors are made of.
+/// Order of the elimination, and masses, of a partition with sparse factors.
 pub struct Sparse {
     order: SparseOrder,
     /// Body of the entries of M with `column <= row`.
