@@ -1,11 +1,9 @@
 //! Second derivatives of circles and lines against second differences of their rows.
 
 use super::*;
-use crate::diagnostics::Diagnostics;
-use crate::model::scenes::Scenes;
+use crate::structure::analysed::analysed;
 use crate::symbolic::evaluate::evaluate;
 use crate::symbolic::sample_points::scattered;
-use crate::{equations, structure, syntax};
 
 /// Step of the differences.
 const H: f64 = 1e-3;
@@ -16,13 +14,7 @@ const DIFFERENCE: f64 = 1e-6;
 /// Number of dyads of circles and lines, their curvatures checked.
 fn checked(statements: &str) -> usize {
     let text = format!("mechanism M; param r: m = 0.1; param l: m = 0.3;\n{statements}");
-    let mut diagnostics = Diagnostics::default();
-    let text = syntax::read(text.parse().expect("tokens"), &mut diagnostics).expect("a header");
-    let scenes = Scenes::resolve(&text, &mut diagnostics).scenes;
-    let model = &scenes.first().expect("the whole text").model;
-    let mut equations = equations::derive(model);
-    let structure = structure::analyse(model, &mut equations, &mut diagnostics);
-    let structure = structure.unwrap_or_else(|| panic!("{}", diagnostics.to_text()));
+    let (equations, structure) = analysed(&text);
     let mut found = 0;
     for block in &structure.blocks {
         let Some(curvature) = &block.curvature else { continue };

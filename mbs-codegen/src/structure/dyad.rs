@@ -264,9 +264,7 @@ fn value(leaf: Leaf, sample: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnostics::Diagnostics;
-    use crate::model::scenes::Scenes;
-    use crate::{equations, structure, syntax};
+    use crate::structure::analysed::analysed;
 
     #[test]
     fn a_similarity_turns_or_mirrors_and_scales_at_any_size() {
@@ -286,13 +284,7 @@ mod tests {
     fn dyads(statements: &str) -> String {
         let text =
             format!("mechanism M; param r: m = 0.1; param l: m = 0.3; param k: rad = 0.4;\n{statements}");
-        let mut diagnostics = Diagnostics::default();
-        let text = syntax::read(text.parse().expect("tokens"), &mut diagnostics).expect("a header");
-        let scenes = Scenes::resolve(&text, &mut diagnostics).scenes;
-        let model = &scenes.first().expect("the whole text").model;
-        let mut equations = equations::derive(model);
-        let structure = structure::analyse(model, &mut equations, &mut diagnostics);
-        let structure = structure.unwrap_or_else(|| panic!("{}", diagnostics.to_text()));
+        let (_, structure) = analysed(&text);
         let solved = structure.blocks.iter().filter(|block| block.explicit.is_none());
         solved.map(|block| block.dyad.as_ref().map_or("-", Dyad::name)).collect::<Vec<_>>().join(", ")
     }

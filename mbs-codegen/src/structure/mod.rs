@@ -1,5 +1,7 @@
 //! Sparsity → matching → block-triangular order; a system that is not square is reported by name.
 
+#[cfg(test)]
+mod analysed;
 pub mod curvature;
 pub mod dyad;
 mod freedom;

@@ -1,19 +1,11 @@
 //! Orders of texts: where there is one, and that it has no entry beyond those of the text where none is needed.
 
 use super::*;
-use crate::diagnostics::Diagnostics;
-use crate::model::scenes::Scenes;
-use crate::{equations, structure, syntax};
+use crate::structure::analysed::analysed;
 
 /// The order of a text, as the code is emitted from.
 fn of(text: &str) -> Option<SparseOrder> {
-    let mut diagnostics = Diagnostics::default();
-    let text = syntax::read(text.parse().expect("tokens"), &mut diagnostics).expect("a header");
-    let scenes = Scenes::resolve(&text, &mut diagnostics).scenes;
-    let model = &scenes.first().expect("the whole text").model;
-    let mut equations = equations::derive(model);
-    let structure = structure::analyse(model, &mut equations, &mut diagnostics);
-    let structure = structure.unwrap_or_else(|| panic!("{}", diagnostics.to_text()));
+    let (equations, structure) = analysed(text);
     order(&equations, structure.independent.len())
 }
 
