@@ -1,7 +1,8 @@
 //! Small motions about a motion on which rows hold, against closed forms and the same motion in coordinates without these rows.
 
 use mbs_runtime::dynamics::{
-    DormandPrince8, Explicit, Linearization, Projection, Simulation, Tolerance, linearize_in,
+    DormandPrince8, Explicit, Linearization, Projection, Simulation, Tolerance, equilibrium, linearize,
+    linearize_in,
 };
 use mbs_runtime::{Dynamic, FailureKind, mechanism};
 
@@ -27,7 +28,7 @@ fn entries<const N: usize>(small: &Linearization<f64, N>) -> [f64; 3] {
 }
 
 fn alike(one: [f64; 3], other: [f64; 3], bound: f64) {
-    let size = one.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()));
+    let size = one.iter().fold(1e-3_f64, |size, entry| size.max(entry.abs()));
     let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
     println!("{one:?}: off by {:.1e}", apart / size);
     assert!(apart < bound * size, "{one:?} {other:?}");
@@ -152,15 +153,110 @@ mechanism! {
 }
 
 #[test]
-fn a_disk_that_rolls_has_neighbours_and_one_that_slides_on_its_contact_has_none() {
+fn a_disk_has_neighbours_where_it_rolls_and_where_it_slides() {
     let rolls = started(Disk::<f64>::default());
     let small = about(&rolls, &[0]);
     // Half its mass again, and the spring.
     alike([6.0, 0.0, 60.0], entries(&small), 1e-9);
     let mut slides = started(Disk { mu: 1e-3 });
     slides.advance_to(0.4).expect("it slides");
-    let state = (slides.q(), slides.qd(), slides.qdd());
-    let failure =
-        linearize_in(slides.mechanism(), slides.t(), state, slides.lambda(), &[]).expect_err("it slides");
-    assert!(matches!(failure.kind, FailureKind::SetValuedForce { row } if row.name == "rub"), "{failure}");
+    let small = about(&slides, &[0, 2]);
+    assert!(small.freedom == 2 && small.independent == [true, false, true], "{small:?}");
+    // Its weight alone presses: the friction does not vary.
+    for (matrix, along, around) in
+        [(small.mass, 4.0, 0.02), (small.damping, 0.0, 0.0), (small.stiffness, 60.0, 0.0)]
+    {
+        alike([along, 0.0, 0.0], [matrix[0][0], matrix[0][1], matrix[1][0]], 1e-11);
+        assert!((matrix[1][1] - around).abs() < 1e-11, "{matrix:?}");
+    }
+}
+
+mechanism! {
+    /// A block on a belt that runs below it, held by a spring from above.
+    mechanism OnRunningBelt;
+    param mu: 1 = 0.3;
+    coord p: [m; 2] = [0, 0];
+    body block { mass: 2, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    tsda spring { from: [-1m, 0.5m], to: p, stiffness: 200, length: 0.9 }
+    contact floor { gap: p[1], restitution: 0 }
+    friction belt { along: p[0] - 3 [m/s]*t, normal: normal(floor), coefficient: mu, sticks: mu }
+    start p = [0, 0] rate [0, 0];
+}
+
+#[test]
+fn a_block_at_rest_on_a_running_belt_has_the_stiffness_of_its_normal_force() {
+    for mu in [0.3, 0.9] {
+        let block = OnRunningBelt { mu };
+        let rest = equilibrium(&block, 0.0, &[0.0, 0.0]).expect("it rests");
+        let x: f64 = rest.q[0];
+        let small =
+            linearize(&block, 0.0, (&rest.q, &[0.0; 2], &[0.0; 2]), &rest.lambda).expect("it is regular");
+        assert!(small.freedom == 1 && !small.frozen, "{small:?}");
+        let (k, free) = (200.0, 0.9);
+        let length = (x + 1.0).hypot(0.5);
+        let pull = 1.0 - free / length;
+        let slope = free * (x + 1.0) / length.powi(3);
+        let balance = -k * pull * (x + 1.0) + mu * (2.0 * 9.81 - 0.5 * k * pull);
+        assert!(balance.abs() < 1e-8, "{balance}");
+        let across = small.basis[0][0];
+        let found =
+            [small.mass, small.damping, small.stiffness].map(|matrix| matrix[0][0] / (across * across));
+        alike([2.0, 0.0, k * (pull + slope * (x + 1.0)) + 0.5 * mu * k * slope], found, 1e-12);
+    }
+}
+
+mechanism! {
+    /// A bead that slides in a rough bowl, in coordinates of its place and in its angle.
+    mechanism RoughBead;
+    param mu: 1 = 0.2;
+    coord p: [m; 2] = [0.3, -0.4];
+    coord phi: rad = -0.9;
+    body bead { mass: 2, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint direction { cross(unit(phi), p) == 0 [m]; }
+    contact bowl { gap: 0.5m - norm(p), restitution: 0 }
+    friction rub { along: 0.5m*phi, normal: normal(bowl), coefficient: mu, sticks: mu }
+    start phi = -2.4 rate 4;
+    start p = [0.5*cos(-2.4), 0.5*sin(-2.4)] rate [-2*sin(-2.4), 2*cos(-2.4)];
+}
+
+#[test]
+fn a_bead_that_slides_in_its_bowl_has_the_neighbours_of_the_closed_form() {
+    let (m, g, radius) = (2.0, 9.81, 0.5);
+    for mu in [0.0, 0.2, 0.8] {
+        let mut run = started(RoughBead { mu });
+        for t in [0.0, 0.1, 0.2] {
+            run.advance_to(t).expect("it moves");
+            let small = about(&run, &[2]);
+            assert_eq!(small.independent, [false, false, true]);
+            // m L² φ̈ = −m g L cos φ − μ L N with N = m L φ̇² − m g sin φ, φ̇ > 0.
+            let (phi, speed) = (run.q()[2], run.qd()[2]);
+            assert!(speed > 0.0, "it has stopped");
+            let damping = 2.0 * mu * m * radius * radius * speed;
+            let stiffness = -m * g * radius * phi.sin() - mu * m * g * radius * phi.cos();
+            alike([m * radius * radius, damping, stiffness], entries(&small), 1e-9);
+        }
+    }
+}
+
+mechanism! {
+    /// The same on two floors in one place, one of them smooth.
+    mechanism OnTwoFloors;
+    coord p: [m; 2] = [0, 0];
+    body block { mass: 2, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    tsda spring { from: [-1m, 0.5m], to: p, stiffness: 200, length: 0.9 }
+    contact floor { gap: p[1], restitution: 0 }
+    contact ice { gap: p[1], restitution: 0 }
+    friction belt { along: p[0] - 3 [m/s]*t, normal: normal(floor), coefficient: 0.3, sticks: 0.3 }
+    start p = [0, 0] rate [0, 0];
+}
+
+#[test]
+fn a_friction_on_a_contact_whose_force_is_one_of_many_has_no_neighbours() {
+    let block = OnTwoFloors::<f64>::default();
+    let state = (&[0.0, 0.0], &[0.5, 0.0], &[0.0; 2]);
+    let failure = linearize(&block, 0.0, state, &[]).expect_err("the share of the floor is not known");
+    assert!(matches!(failure.kind, FailureKind::SetValuedForce { .. }), "{failure}");
 }

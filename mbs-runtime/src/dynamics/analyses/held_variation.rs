@@ -4,11 +4,10 @@
 //! coefficients as there are rows, with those of the others 1 or 0. Their rates follow from J ṙ = −J̇ r and J r̈ = γ_q r + γ_q̇ ṙ − (J q̈)_q r,
 //! as they do for constraints.
 
-use crate::dynamics::formulations::set_valued::{is_off, sticks};
+use crate::dynamics::formulations::set_valued::sticks;
 use crate::dynamics::formulations::variation::{DIFFERENCE, FreeMotion, PREFERRED, Variation};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::Model;
-use crate::failure::{Failure, FailureKind, checks};
 use crate::linear_algebra::parts::{at, identity};
 use crate::linear_algebra::vectors::{Each, dot};
 use crate::mechanism::dynamic::Dynamic;
@@ -51,22 +50,14 @@ where
     S: Dynamic<R, N, M>,
     R: Real,
 {
-    type Output = Result<FreeMotions<R, N>, Failure>;
+    type Output = FreeMotions<R, N>;
 
-    /// # Errors
-    /// [`FailureKind::SetValuedForce`] with a friction that slides on a rigid contact: its force varies with that of the contact.
     fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         let (zero, modes) = (R::constant(0.0), S::set_valued_modes(self.model.parameters));
         let rest = FreeMotion { place: [zero; N], rate: [zero; N], acceleration: [zero; N] };
         let (motions, mut independent) = self.free_motions();
         let mut held = [false; K];
-        for (index, ((held, row), mode)) in held.iter_mut().zip(rows).zip(modes).enumerate() {
-            *held = sticks(mode);
-            if !*held && row.on.is_some() && !is_off(row, modes) {
-                let row = checks::entry(S::SET_VALUED, u16::try_from(index).unwrap_or(u16::MAX));
-                return Err(FailureKind::SetValuedForce { row }.at(self.t.to_f64()));
-            }
-        }
+        held.iter_mut().zip(modes).for_each(|(held, mode)| *held = sticks(mode));
         let along = Held { of: &self, rows, mask: held };
         let taken = along.eliminated(&motions, &mut independent);
         let mut free = [rest; N];
@@ -75,7 +66,7 @@ where
                 *free = along.completed(motion, &motions, &taken);
             }
         }
-        Ok((free, independent))
+        (free, independent)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Small motions about a state: M̄ s̈ + C̄ ṡ + K̄ s = 0 in as many coordinates s as there are degrees of freedom.
 
 use crate::dynamics::analyses::held_variation::{AlongMotion, FreeMotions};
-use crate::dynamics::analyses::modes::FreeOfHeld;
+use crate::dynamics::analyses::modes::{FreeOfHeld, Unworked};
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::formulations::variation::{FreeMotion, Variation};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -13,10 +13,13 @@ use crate::dynamics::model::method::require_smooth;
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::Failure;
+use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::lu::Lu;
+use crate::linear_algebra::parts::{at, identity};
 use crate::linear_algebra::vectors::{dot, times};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
-use crate::tolerances::{forces, singular};
+use crate::tolerances::{forces, set_valued, singular};
 
 /// Matrices of small motions q + R s on the constraints.
 ///
@@ -25,7 +28,8 @@ use crate::tolerances::{forces, singular};
 /// About an equilibrium s are orthonormal motions, and the eigenvalues do not depend on that choice. About a state that
 /// moves s are the variations of the [`independent`](Self::independent) coordinates. The equation with the matrices of
 /// each instant is then that of the true neighbouring motions; its eigenvalues at one instant differ in other coordinates.
-/// Multipliers are held where friction or the rate of a state depends on them. With first-order states z there is Rᵀ ∂Q/∂z ζ on the
+/// Multipliers are held where friction or the rate of a state depends on them. The force of a rigid contact varies, with the friction that
+/// slides on it: Lᵀ is on the left in place of Rᵀ, where the forces of rows that hold do no work along L, Lᵀ M R = Rᵀ M R. With first-order states z there is Rᵀ ∂Q/∂z ζ on the
 /// right, and a further equation ζ̇ = ∂ż/∂z ζ + (∂ż/∂q R + ∂ż/∂q̇ Ṙ) s + ∂ż/∂q̇ R ṡ: [`linearize_with_states`]. The eigenvalues
 /// are then 2·`freedom` and as many more as there are states.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +83,7 @@ pub struct Linearization<R, const N: usize> {
 /// [`NonFinite`](crate::FailureKind::NonFinite); [`SingularMass`](crate::FailureKind::SingularMass) where a free motion moves no mass; [`StatesUnknown`](crate::FailureKind::StatesUnknown) for a text with
 /// first-order states, see [`linearize_with_states`]; [`NotSmooth`](crate::FailureKind::NotSmooth);
 /// [`SetValuedEdge`](crate::FailureKind::SetValuedEdge) where a rigid contact touches without a force or a friction is at its limit;
-/// [`SetValuedForce`](crate::FailureKind::SetValuedForce) about a state that moves while a friction slides on a rigid contact;
+/// [`SetValuedForce`](crate::FailureKind::SetValuedForce) where a friction slides on a rigid contact whose force is one of many;
 /// this and [`EventOfMotion`](crate::FailureKind::EventOfMotion) where the state is not one of the modes that it would start in.
 pub fn linearize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
@@ -173,11 +177,12 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
     };
     let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
+    let mut unworked = None;
     if const { !S::SET_VALUED.is_empty() }
         && let Some(rates) = judged
     {
         let free = FreeOfHeld { model, t, y, rates, basis: (basis, freedom) };
-        (basis, freedom) =
+        ((basis, freedom), unworked) =
             mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, free)?;
     }
     let slow = scaled(&y.qd) <= forces::AT_REST.of();
@@ -187,22 +192,63 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
         let motions = if const { S::SET_VALUED.is_empty() } {
             along.free_motions()
         } else {
-            mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, along)?
+            mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, along)
         };
-        let (linear, rates) = moving(&tangent, &motions);
-        return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &rates))));
+        let (linear, left, rates) = moving(&tangent, &motions, unworked.as_ref())?;
+        return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &left, &rates))));
     }
-    let reduced = |matrix: &[[R; N]; N]| reduced(&basis, &basis.map(|right| times(matrix, &right)), freedom);
+    let columns = |matrix: &[[R; N]; N]| basis.map(|right| times(matrix, &right));
+    let inertia = columns(&tangent.mass);
+    let mass = reduced(&basis, &inertia, freedom);
+    let left = left(&tangent.mass, (&basis, freedom), (&inertia, &mass), unworked.as_ref())?;
     let linear = Linearization {
         freedom,
         basis,
-        mass: reduced(&tangent.mass),
-        damping: reduced(&tangent.damping),
-        stiffness: reduced(&tangent.stiffness),
+        mass,
+        damping: reduced(&left, &columns(&tangent.damping), freedom),
+        stiffness: reduced(&left, &columns(&tangent.stiffness), freedom),
         frozen: has_moving_states(model, &position, y, (slopes.as_ref(), lambda)),
         independent: [false; N],
     };
-    Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &[[zero; N]; N]))))
+    Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &left, &[[zero; N]; N]))))
+}
+
+/// What takes forces to the equation: R itself, or combinations of motions `unworked` whose products with M R, `inertia`, are those of R.
+/// So the equation keeps the mass `reduced_mass`.
+///
+/// # Errors
+/// That of `unworked` where no combination has these products.
+fn left<R: Real, const N: usize>(
+    mass: &[[R; N]; N],
+    (basis, freedom): (&[[R; N]; N], usize),
+    (inertia, reduced_mass): (&[[R; N]; N], &[[R; N]; N]),
+    unworked: Option<&Unworked<R, N>>,
+) -> Result<[[R; N]; N], Failure> {
+    let Some(Unworked { motions: unworked, singular }) = unworked else { return Ok(*basis) };
+    let (zero, one) = (R::constant(0.0), R::constant(1.0));
+    let mut products = identity::<R, N>();
+    let (mut sizes, mut scales) = ([one; N], [one; N]);
+    let lines = products.iter_mut().zip(inertia).zip(reduced_mass).zip(&mut sizes).enumerate().take(freedom);
+    for (index, (((line, inertia), mass), size)) in lines {
+        *size = at(mass, index).sqrt();
+        for (entry, motion) in line.iter_mut().zip(unworked).take(freedom) {
+            *entry = dot(motion, inertia);
+        }
+    }
+    for (scale, motion) in scales.iter_mut().zip(unworked).take(freedom) {
+        *scale = one / dot(motion, &times(mass, motion)).sqrt();
+    }
+    let (factors, margin) = Lu::factorize(&products, &sizes, &scales);
+    if !set_valued::DEPENDENT.of::<R>().less(margin) {
+        return Err(*singular);
+    }
+    let mut left = [[zero; N]; N];
+    for (left, mass) in left.iter_mut().zip(reduced_mass).take(freedom) {
+        for (share, motion) in factors.solve(mass).iter().zip(unworked).take(freedom) {
+            *left = left.plus(*share, &[1.0], [motion]);
+        }
+    }
+    Ok(left)
 }
 
 /// `true` if the accelerations `qdd` (N) of a state without speeds are those of an equilibrium next to it, as those of a stiff
@@ -244,10 +290,11 @@ fn has_moving_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
     moving.any(|moves| moves)
 }
 
-/// Coupling of the states with q, transformed from the coordinates q to s: `rates` is Ṙ, column by column.
+/// Coupling of the states with q, transformed from the coordinates q to s: `left` takes forces to the equation, `rates` is Ṙ, column by column.
 fn coupled<R: Real, const N: usize, Z, P>(
     mut slopes: P,
     linear: &Linearization<R, N>,
+    left: &[[R; N]; N],
     rates: &[[R; N]; N],
 ) -> P
 where
@@ -256,12 +303,12 @@ where
 {
     for slope in slopes.as_mut() {
         let (force, q, qd) = (slope.force, slope.q, slope.qd);
-        let columns = linear.basis.iter().zip(rates);
+        let columns = linear.basis.iter().zip(rates).zip(left);
         let parts = slope.force.iter_mut().zip(&mut slope.q).zip(&mut slope.qd).zip(columns);
-        for (index, (((along, place), speed), (basis, rate))) in parts.enumerate() {
+        for (index, (((along, place), speed), ((basis, rate), left))) in parts.enumerate() {
             let free = index < linear.freedom;
             let of = |value: R| if free { value } else { R::constant(0.0) };
-            *along = of(dot(&force, basis));
+            *along = of(dot(&force, left));
             *place = of(dot(&q, basis) + dot(&qd, rate));
             *speed = of(dot(&qd, basis));
         }
@@ -269,11 +316,15 @@ where
     slopes
 }
 
-/// The matrices about a state that moves, and Ṙ, column by column.
+/// The matrices about a state that moves, what takes forces to the equation, and Ṙ, column by column.
+///
+/// # Errors
+/// Those of [`left`].
 fn moving<R: Real, const N: usize>(
     tangent: &Tangent<R, N>,
     (motions, independent): &FreeMotions<R, N>,
-) -> (Linearization<R, N>, [[R; N]; N]) {
+    unworked: Option<&Unworked<R, N>>,
+) -> Result<(Linearization<R, N>, [[R; N]; N], [[R; N]; N]), Failure> {
     let (one, none) = (R::constant(1.0), [[R::constant(0.0); N]; N]);
     let (mut basis, mut rates, mut mass, mut damping, mut stiffness) = (none, none, none, none, none);
     let mut freedom = 0;
@@ -291,16 +342,18 @@ fn moving<R: Real, const N: usize>(
             freedom += 1;
         }
     }
+    let reduced_mass = reduced(&basis, &mass, freedom);
+    let left = left(&tangent.mass, (&basis, freedom), (&mass, &reduced_mass), unworked)?;
     let linear = Linearization {
         freedom,
-        mass: reduced(&basis, &mass, freedom),
-        damping: reduced(&basis, &damping, freedom),
-        stiffness: reduced(&basis, &stiffness, freedom),
+        mass: reduced_mass,
+        damping: reduced(&left, &damping, freedom),
+        stiffness: reduced(&left, &stiffness, freedom),
         basis,
         frozen: true,
         independent: *independent,
     };
-    (linear, rates)
+    Ok((linear, left, rates))
 }
 
 /// Rᵀ A, R the first `freedom` vectors of `basis`, A as many `columns`.

@@ -12,7 +12,7 @@ use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
-use crate::mechanism::set_valued::{SetValuedRow, WithSetValuedRows};
+use crate::mechanism::set_valued::{SetValuedMode, SetValuedRow, WithSetValuedRows};
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, set_valued};
 
@@ -176,14 +176,30 @@ where
     }
 }
 
-/// Motions that constraints leave free, without those that set-valued rows hold: in place of `basis`, column by column, and their number.
+/// Motions that constraints leave free, without those that set-valued rows hold.
 pub(super) struct FreeOfHeld<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     pub model: &'a Model<'a, S, R, N, M>,
     pub t: R,
     pub y: &'a IntegratorState<R, N, S::States>,
     pub rates: &'a Solved<R, N, M, S::States>,
-    /// Orthonormal in the metric, and how many of them count.
-    pub basis: ([[R; N]; N], usize),
+    /// Those of the constraints alone.
+    pub basis: Columns<R, N>,
+}
+
+/// Motions column by column, orthonormal in the metric, and how many of them count.
+type Columns<R, const N: usize> = ([[R; N]; N], usize);
+
+/// Motions free of rows that hold, and those along which forces of these rows do no work, where these are others: as many. They are others
+/// where a friction slides on a contact, for it does work with that contact's force.
+pub(super) type Free<R, const N: usize> = (Columns<R, N>, Option<Unworked<R, N>>);
+
+/// Motions along which forces of rows that hold do no work.
+#[derive(Clone, Copy)]
+pub(super) struct Unworked<R, const N: usize> {
+    /// Column by column, orthonormal in the metric.
+    pub motions: [[R; N]; N],
+    /// The failure where accelerations do not follow in them.
+    pub singular: Failure,
 }
 
 impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for FreeOfHeld<'_, S, R, N, M>
@@ -191,19 +207,48 @@ where
     S: Dynamic<R, N, M>,
     R: Real,
 {
-    type Output = Result<([[R; N]; N], usize), Failure>;
+    type Output = Result<Free<R, N>, Failure>;
 
     fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         self.require_no_edge(rows)?;
-        let (basis, freedom) = self.basis;
-        let (zero, modes) = (R::constant(0.0), S::set_valued_modes(self.model.parameters));
-        let (mut taken, mut count) = ([[zero; N]; N], 0);
-        for (row, _) in rows.iter().zip(modes).filter(|(_, mode)| sticks(mode)) {
-            let mut along = [zero; N];
-            for (along, motion) in along.iter_mut().zip(&basis).take(freedom) {
-                *along = dot(&row.gradient, motion);
+        let modes = S::set_valued_modes(self.model.parameters);
+        let free = self.without::<K>(modes, |index| rows.get(index).map(|row| row.gradient));
+        if const { S::HAS_FRICTION_ON_CONTACTS } {
+            let mut each = rows.iter().zip(modes);
+            if let Some(row) =
+                each.position(|(row, mode)| row.on.is_some() && !sticks(mode) && !is_off(row, modes))
+            {
+                let unworked =
+                    self.without::<K>(modes, |index| Some(column::<S, R, N, M, K>(rows, modes, index)));
+                let row = checks::entry(S::SET_VALUED, u16::try_from(row).unwrap_or(u16::MAX));
+                let singular = FailureKind::SetValuedForce { row }.at(self.t.to_f64());
+                if unworked.1 != free.1 {
+                    return Err(singular);
+                }
+                return Ok((free, Some(Unworked { motions: unworked.0, singular })));
             }
-            let scaled = row.gradient.iter().zip(&self.model.metric.coordinates);
+        }
+        Ok((free, None))
+    }
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> FreeOfHeld<'_, S, R, N, M> {
+    /// The motions on which the `gradient` (N) of each row that holds is 0.
+    fn without<const K: usize>(
+        &self,
+        modes: &[SetValuedMode<R>],
+        gradient: impl Fn(usize) -> Option<[R; N]>,
+    ) -> Columns<R, N> {
+        let (basis, freedom) = &self.basis;
+        let zero = R::constant(0.0);
+        let (mut taken, mut count) = ([[zero; N]; N], 0);
+        let held = modes.iter().enumerate().take(K).filter(|(_, mode)| sticks(mode));
+        for gradient in held.filter_map(|(index, _)| gradient(index)) {
+            let mut along = [zero; N];
+            for (along, motion) in along.iter_mut().zip(basis).take(*freedom) {
+                *along = dot(&gradient, motion);
+            }
+            let scaled = gradient.iter().zip(&self.model.metric.coordinates);
             let whole = scaled.fold(zero, |sum, (entry, scale)| {
                 let part = *entry * *scale;
                 sum + part * part
@@ -220,7 +265,7 @@ where
         let (held, mut free) = (count, [[zero; N]; N]);
         for slot in free.iter_mut().take(freedom.saturating_sub(held)) {
             let mut best = ([zero; N], zero);
-            for index in 0..freedom {
+            for index in 0..*freedom {
                 let mut unit = [zero; N];
                 unit.iter_mut().skip(index).take(1).for_each(|part| *part = R::constant(1.0));
                 let own = beside(&unit, &taken, count);
@@ -231,15 +276,13 @@ where
                 *place = best.0;
                 count += 1;
             }
-            for (motion, share) in basis.iter().zip(&best.0).take(freedom) {
+            for (motion, share) in basis.iter().zip(&best.0).take(*freedom) {
                 *slot = slot.plus(*share, &[1.0], [motion]);
             }
         }
-        Ok((free, freedom.saturating_sub(held)))
+        (free, freedom.saturating_sub(held))
     }
-}
 
-impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> FreeOfHeld<'_, S, R, N, M> {
     /// Fails where a row is between two modes.
     ///
     /// # Errors
