@@ -316,6 +316,9 @@ where
     slopes
 }
 
+/// The matrices about a state that moves, with two more matrices.
+type Moving<R, const N: usize> = (Linearization<R, N>, [[R; N]; N], [[R; N]; N]);
+
 /// The matrices about a state that moves, what takes forces to the equation, and Ṙ, column by column.
 ///
 /// # Errors
@@ -324,7 +327,7 @@ fn moving<R: Real, const N: usize>(
     tangent: &Tangent<R, N>,
     (motions, independent): &FreeMotions<R, N>,
     unworked: Option<&Unworked<R, N>>,
-) -> Result<(Linearization<R, N>, [[R; N]; N], [[R; N]; N]), Failure> {
+) -> Result<Moving<R, N>, Failure> {
     let (one, none) = (R::constant(1.0), [[R::constant(0.0); N]; N]);
     let (mut basis, mut rates, mut mass, mut damping, mut stiffness) = (none, none, none, none, none);
     let mut freedom = 0;
