@@ -184,26 +184,42 @@ mechanism! {
     start p = [0, 0] rate [0, 0];
 }
 
+/// Compares small motions about the rest of a block on a belt with the closed form.
+fn is_stiffness_with_normal_force<S: Dynamic<f64, 2, M>, const M: usize>(block: &S, mu: f64) {
+    let rest = equilibrium(block, 0.0, &[0.0, 0.0]).expect("it rests");
+    let x: f64 = rest.q[0];
+    let small = linearize(block, 0.0, (&rest.q, &[0.0; 2], &[0.0; 2]), &rest.lambda).expect("it is regular");
+    assert!(small.freedom == 1 && !small.frozen, "{small:?}");
+    let (k, free) = (200.0, 0.9);
+    let length = (x + 1.0).hypot(0.5);
+    let pull = 1.0 - free / length;
+    let slope = free * (x + 1.0) / length.powi(3);
+    let balance = -k * pull * (x + 1.0) + mu * (2.0 * 9.81 - 0.5 * k * pull);
+    assert!(balance.abs() < 1e-8, "{balance}");
+    let across = small.basis[0][0];
+    let found = [small.mass, small.damping, small.stiffness].map(|matrix| matrix[0][0] / (across * across));
+    alike([2.0, 0.0, k * (pull + slope * (x + 1.0)) + 0.5 * mu * k * slope], found, 1e-12);
+}
+
 #[test]
 fn a_block_at_rest_on_a_running_belt_has_the_stiffness_of_its_normal_force() {
     for mu in [0.3, 0.9] {
-        let block = OnRunningBelt { mu };
-        let rest = equilibrium(&block, 0.0, &[0.0, 0.0]).expect("it rests");
-        let x: f64 = rest.q[0];
-        let small =
-            linearize(&block, 0.0, (&rest.q, &[0.0; 2], &[0.0; 2]), &rest.lambda).expect("it is regular");
-        assert!(small.freedom == 1 && !small.frozen, "{small:?}");
-        let (k, free) = (200.0, 0.9);
-        let length = (x + 1.0).hypot(0.5);
-        let pull = 1.0 - free / length;
-        let slope = free * (x + 1.0) / length.powi(3);
-        let balance = -k * pull * (x + 1.0) + mu * (2.0 * 9.81 - 0.5 * k * pull);
-        assert!(balance.abs() < 1e-8, "{balance}");
-        let across = small.basis[0][0];
-        let found =
-            [small.mass, small.damping, small.stiffness].map(|matrix| matrix[0][0] / (across * across));
-        alike([2.0, 0.0, k * (pull + slope * (x + 1.0)) + 0.5 * mu * k * slope], found, 1e-12);
+        is_stiffness_with_normal_force(&OnRunningBelt { mu }, mu);
+        is_stiffness_with_normal_force(&OnRunningGuide { mu }, mu);
     }
+}
+
+mechanism! {
+    /// The same on a guide along the belt.
+    mechanism OnRunningGuide;
+    param mu: 1 = 0.3;
+    coord p: [m; 2] = [0, 0];
+    body block { mass: 2, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    tsda spring { from: [-1m, 0.5m], to: p, stiffness: 200, length: 0.9 }
+    constraint floor { p[1] == 0 [m]; }
+    friction belt { along: p[0] - 3 [m/s]*t, normal: lambda(floor), coefficient: mu, speed: 1e-3 }
+    start p = [0, 0] rate [0, 0];
 }
 
 mechanism! {
@@ -221,22 +237,42 @@ mechanism! {
     start p = [0.5*cos(-2.4), 0.5*sin(-2.4)] rate [-2*sin(-2.4), 2*cos(-2.4)];
 }
 
+mechanism! {
+    /// The same on a wire.
+    mechanism RoughWire;
+    param mu: 1 = 0.2;
+    coord p: [m; 2] = [0.3, -0.4];
+    coord phi: rad = -0.9;
+    body bead { mass: 2, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint direction { cross(unit(phi), p) == 0 [m]; }
+    constraint wire { norm(p) == 0.5m; }
+    friction rub { along: 0.5m*phi, normal: lambda(wire), coefficient: mu, speed: 1e-3 }
+    start phi = -2.4 rate 4;
+    start p = [0.5*cos(-2.4), 0.5*sin(-2.4)] rate [-2*sin(-2.4), 2*cos(-2.4)];
+}
+
+/// Compares small motions about the motion of a bead with the closed form: m L² φ̈ = −m g L cos φ − μ L N with N = m L φ̇² − m g sin φ, φ̇ > 0.
+fn slides_with_normal_force<S: Dynamic<f64, 3, M>, const M: usize>(bead: S, mu: f64) {
+    let (m, g, radius) = (2.0, 9.81, 0.5);
+    let mut run = started(bead);
+    for t in [0.0, 0.1, 0.2] {
+        run.advance_to(t).expect("it moves");
+        let small = about(&run, &[2]);
+        assert_eq!(small.independent, [false, false, true]);
+        let (phi, speed) = (run.q()[2], run.qd()[2]);
+        assert!(speed > 0.05, "it has stopped");
+        let damping = 2.0 * mu * m * radius * radius * speed;
+        let stiffness = -m * g * radius * phi.sin() - mu * m * g * radius * phi.cos();
+        alike([m * radius * radius, damping, stiffness], entries(&small), 1e-9);
+    }
+}
+
 #[test]
 fn a_bead_that_slides_in_its_bowl_has_the_neighbours_of_the_closed_form() {
-    let (m, g, radius) = (2.0, 9.81, 0.5);
     for mu in [0.0, 0.2, 0.8] {
-        let mut run = started(RoughBead { mu });
-        for t in [0.0, 0.1, 0.2] {
-            run.advance_to(t).expect("it moves");
-            let small = about(&run, &[2]);
-            assert_eq!(small.independent, [false, false, true]);
-            // m L² φ̈ = −m g L cos φ − μ L N with N = m L φ̇² − m g sin φ, φ̇ > 0.
-            let (phi, speed) = (run.q()[2], run.qd()[2]);
-            assert!(speed > 0.0, "it has stopped");
-            let damping = 2.0 * mu * m * radius * radius * speed;
-            let stiffness = -m * g * radius * phi.sin() - mu * m * g * radius * phi.cos();
-            alike([m * radius * radius, damping, stiffness], entries(&small), 1e-9);
-        }
+        slides_with_normal_force(RoughBead { mu }, mu);
+        slides_with_normal_force(RoughWire { mu }, mu);
     }
 }
 

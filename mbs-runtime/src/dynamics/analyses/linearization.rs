@@ -1,7 +1,8 @@
 //! Small motions about a state: M̄ s̈ + C̄ ṡ + K̄ s = 0 in as many coordinates s as there are degrees of freedom.
 
 use crate::dynamics::analyses::held_variation::{AlongMotion, FreeMotions};
-use crate::dynamics::analyses::modes::{FreeOfHeld, Unworked};
+use crate::dynamics::analyses::modes::FreeOfHeld;
+use crate::dynamics::analyses::unworked::{Unworked, left};
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::formulations::variation::{FreeMotion, Variation};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -13,13 +14,10 @@ use crate::dynamics::model::method::require_smooth;
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::Failure;
-use crate::linear_algebra::factorization::Factorization;
-use crate::linear_algebra::lu::Lu;
-use crate::linear_algebra::parts::{at, identity};
 use crate::linear_algebra::vectors::{dot, times};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
-use crate::tolerances::{forces, set_valued, singular};
+use crate::tolerances::{forces, singular};
 
 /// Matrices of small motions q + R s on the constraints.
 ///
@@ -28,8 +26,8 @@ use crate::tolerances::{forces, set_valued, singular};
 /// About an equilibrium s are orthonormal motions, and the eigenvalues do not depend on that choice. About a state that
 /// moves s are the variations of the [`independent`](Self::independent) coordinates. The equation with the matrices of
 /// each instant is then that of the true neighbouring motions; its eigenvalues at one instant differ in other coordinates.
-/// Multipliers are held where friction or the rate of a state depends on them. The force of a rigid contact varies, with the friction that
-/// slides on it: Lᵀ is on the left in place of Rᵀ, where the forces of rows that hold do no work along L, Lᵀ M R = Rᵀ M R. With first-order states z there is Rᵀ ∂Q/∂z ζ on the
+/// Multipliers and forces of rigid contacts vary, with the frictions that slide by them: then Lᵀ is on the left in place of Rᵀ. Along L what
+/// varies with them does no work, and Lᵀ M R = Rᵀ M R. They are held where the rate of a state depends on them. With first-order states z there is Rᵀ ∂Q/∂z ζ on the
 /// right, and a further equation ζ̇ = ∂ż/∂z ζ + (∂ż/∂q R + ∂ż/∂q̇ Ṙ) s + ∂ż/∂q̇ R ṡ: [`linearize_with_states`]. The eigenvalues
 /// are then 2·`freedom` and as many more as there are states.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +82,7 @@ pub struct Linearization<R, const N: usize> {
 /// first-order states, see [`linearize_with_states`]; [`NotSmooth`](crate::FailureKind::NotSmooth);
 /// [`SetValuedEdge`](crate::FailureKind::SetValuedEdge) where a rigid contact touches without a force or a friction is at its limit;
 /// [`SetValuedForce`](crate::FailureKind::SetValuedForce) where a friction slides on a rigid contact whose force is one of many;
+/// [`SharedNormalForce`](crate::FailureKind::SharedNormalForce) where a multiplier is, by which a friction slides;
 /// this and [`EventOfMotion`](crate::FailureKind::EventOfMotion) where the state is not one of the modes that it would start in.
 pub fn linearize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
@@ -177,11 +176,12 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
     };
     let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
-    let mut unworked = None;
+    let rows = (&tangent.mass, &phi_q, factors.rank());
+    let mut unworked = Unworked::by_multipliers(model, (t, y, lambda), &position, rows)?;
     if const { !S::SET_VALUED.is_empty() }
         && let Some(rates) = judged
     {
-        let free = FreeOfHeld { model, t, y, rates, basis: (basis, freedom) };
+        let free = FreeOfHeld { model, t, y, rates, basis: (basis, freedom), unworked };
         ((basis, freedom), unworked) =
             mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, free)?;
     }
@@ -211,44 +211,6 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
         independent: [false; N],
     };
     Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &left, &[[zero; N]; N]))))
-}
-
-/// What takes forces to the equation: R itself, or combinations of motions `unworked` whose products with M R, `inertia`, are those of R.
-/// So the equation keeps the mass `reduced_mass`.
-///
-/// # Errors
-/// That of `unworked` where no combination has these products.
-fn left<R: Real, const N: usize>(
-    mass: &[[R; N]; N],
-    (basis, freedom): (&[[R; N]; N], usize),
-    (inertia, reduced_mass): (&[[R; N]; N], &[[R; N]; N]),
-    unworked: Option<&Unworked<R, N>>,
-) -> Result<[[R; N]; N], Failure> {
-    let Some(Unworked { motions: unworked, singular }) = unworked else { return Ok(*basis) };
-    let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let mut products = identity::<R, N>();
-    let (mut sizes, mut scales) = ([one; N], [one; N]);
-    let lines = products.iter_mut().zip(inertia).zip(reduced_mass).zip(&mut sizes).enumerate().take(freedom);
-    for (index, (((line, inertia), mass), size)) in lines {
-        *size = at(mass, index).sqrt();
-        for (entry, motion) in line.iter_mut().zip(unworked).take(freedom) {
-            *entry = dot(motion, inertia);
-        }
-    }
-    for (scale, motion) in scales.iter_mut().zip(unworked).take(freedom) {
-        *scale = one / dot(motion, &times(mass, motion)).sqrt();
-    }
-    let (factors, margin) = Lu::factorize(&products, &sizes, &scales);
-    if !set_valued::DEPENDENT.of::<R>().less(margin) {
-        return Err(*singular);
-    }
-    let mut left = [[zero; N]; N];
-    for (left, mass) in left.iter_mut().zip(reduced_mass).take(freedom) {
-        for (share, motion) in factors.solve(mass).iter().zip(unworked).take(freedom) {
-            *left = left.plus(*share, &[1.0], [motion]);
-        }
-    }
-    Ok(left)
 }
 
 /// `true` if the accelerations `qdd` (N) of a state without speeds are those of an equilibrium next to it, as those of a stiff

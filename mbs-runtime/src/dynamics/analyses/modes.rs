@@ -1,5 +1,6 @@
 //! Modes of frictions that stick, of rigid contacts and of events at one state, for analyses of that state alone.
 
+use crate::dynamics::analyses::unworked::Unworked;
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::equilibrium::modes::Basis;
 use crate::dynamics::formulations::projection::Projection;
@@ -184,23 +185,16 @@ pub(super) struct FreeOfHeld<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, c
     pub rates: &'a Solved<R, N, M, S::States>,
     /// Those of the constraints alone.
     pub basis: Columns<R, N>,
+    /// Without work of multipliers, where these are others.
+    pub unworked: Option<Unworked<R, N>>,
 }
 
 /// Motions column by column, orthonormal in the metric, and how many of them count.
 type Columns<R, const N: usize> = ([[R; N]; N], usize);
 
-/// Motions free of rows that hold, and those along which forces of these rows do no work, where these are others: as many. They are others
-/// where a friction slides on a contact, for it does work with that contact's force.
+/// Motions free of rows that hold, and those without work of forces that vary, where these are others: a friction that slides on a contact
+/// works with that contact's force.
 pub(super) type Free<R, const N: usize> = (Columns<R, N>, Option<Unworked<R, N>>);
-
-/// Motions along which forces of rows that hold do no work.
-#[derive(Clone, Copy)]
-pub(super) struct Unworked<R, const N: usize> {
-    /// Column by column, orthonormal in the metric.
-    pub motions: [[R; N]; N],
-    /// The failure where accelerations do not follow in them.
-    pub singular: Failure,
-}
 
 impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for FreeOfHeld<'_, S, R, N, M>
 where
@@ -212,34 +206,36 @@ where
     fn at<const K: usize>(self, rows: &[SetValuedRow<R, N>; K]) -> Self::Output {
         self.require_no_edge(rows)?;
         let modes = S::set_valued_modes(self.model.parameters);
-        let free = self.without::<K>(modes, |index| rows.get(index).map(|row| row.gradient));
-        if const { S::HAS_FRICTION_ON_CONTACTS } {
-            let mut each = rows.iter().zip(modes);
-            if let Some(row) =
-                each.position(|(row, mode)| row.on.is_some() && !sticks(mode) && !is_off(row, modes))
-            {
-                let unworked =
-                    self.without::<K>(modes, |index| Some(column::<S, R, N, M, K>(rows, modes, index)));
+        let free = self.without::<K>(&self.basis, modes, |index| rows.get(index).map(|row| row.gradient));
+        let mut each = rows.iter().zip(modes);
+        let slides = each.position(|(row, mode)| row.on.is_some() && !sticks(mode) && !is_off(row, modes));
+        let singular = match (slides, self.unworked) {
+            (None, None) => return Ok((free, None)),
+            (None, Some(unworked)) => unworked.singular,
+            (Some(row), _) => {
                 let row = checks::entry(S::SET_VALUED, u16::try_from(row).unwrap_or(u16::MAX));
-                let singular = FailureKind::SetValuedForce { row }.at(self.t.to_f64());
-                if unworked.1 != free.1 {
-                    return Err(singular);
-                }
-                return Ok((free, Some(Unworked { motions: unworked.0, singular })));
+                FailureKind::SetValuedForce { row }.at(self.t.to_f64())
             }
+        };
+        let base = (self.unworked.map_or(self.basis.0, |unworked| unworked.motions), self.basis.1);
+        let unworked =
+            self.without::<K>(&base, modes, |index| Some(column::<S, R, N, M, K>(rows, modes, index)));
+        if unworked.1 == free.1 {
+            Ok((free, Some(Unworked { motions: unworked.0, singular })))
+        } else {
+            Err(singular)
         }
-        Ok((free, None))
     }
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> FreeOfHeld<'_, S, R, N, M> {
-    /// The motions on which the `gradient` (N) of each row that holds is 0.
+    /// Those of the motions `basis` on which the `gradient` (N) of each row that holds is 0.
     fn without<const K: usize>(
         &self,
+        (basis, freedom): &Columns<R, N>,
         modes: &[SetValuedMode<R>],
         gradient: impl Fn(usize) -> Option<[R; N]>,
     ) -> Columns<R, N> {
-        let (basis, freedom) = &self.basis;
         let zero = R::constant(0.0);
         let (mut taken, mut count) = ([[zero; N]; N], 0);
         let held = modes.iter().enumerate().take(K).filter(|(_, mode)| sticks(mode));
