@@ -354,16 +354,12 @@ fn print_law(
     let table = table.map_or_else(String::new, |table| format!("; {table}"));
     match continuity.stated {
         SMOOTH => writeln!(out, "law          all derivatives are continuous{table}")?,
+        1 => writeln!(out, "law          1 continuous derivative, {checked}{table}")?,
         count => writeln!(out, "law          {count} continuous derivatives, {checked}{table}")?,
     }
     for order in 0..3 {
         let (name, unit) = [("lift", ""), ("velocity", "/rad"), ("acceleration", "/rad^2")][order];
-        let values: Vec<f64> =
-            (0..720).map(|k| lift.jet(lift.origin() + f64::from(k).to_radians() / 2.0)[order]).collect();
-        let [low, high] = [
-            values.iter().copied().fold(f64::INFINITY, f64::min),
-            values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        ];
+        let [low, high] = lift.range(order);
         let (factor, base) = if by_angle { (1_f64.to_degrees(), "deg") } else { (1e3, "mm") };
         writeln!(out, "{name:<13}{:.4} to {:.4} {base}{unit}", factor * low, factor * high)?;
     }
