@@ -43,7 +43,8 @@ pub fn least(pieces: &[Vec<f64>], sampled: &[Vec<f64>], f: impl Fn(f64) -> f64) 
         let mut look = |from: usize, to: usize, bound: f64| {
             if bound < best.1 {
                 let found = refine(places[from], places[to], &f);
-                best = if found.1 < best.1 { found } else { best };
+                // On a dwell the first sample stays the place.
+                best = if found.1 < best.1 - noise { found } else { best };
             }
         };
         let mut most = 0.0_f64;
