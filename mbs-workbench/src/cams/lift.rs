@@ -6,6 +6,7 @@ use mbs_runtime::driver::{Cycloid, Law, Polynomial345, Polynomial4567, Rise, SMO
 use mbs_runtime::{Function, Interval, Real};
 
 use super::bspline::BSpline;
+use super::search::{least, pieces};
 use super::shapes::{
     ConstantVelocity, EvenPowers, Harmonics, ModifiedSine, ModifiedTrapezoid, ORDERS, SimpleHarmonic,
 };
@@ -172,6 +173,10 @@ impl Part {
                     factor = factor / T::constant(*half);
                 }
                 jet
+            }
+            // The end belongs to what follows: where two flanks meet, each would add its acceleration there.
+            Part::Step { start, duration, height, .. } if x.to_f64() >= start + duration => {
+                core::array::from_fn(|order| T::constant(if order == 0 { *height } else { 0.0 }))
             }
             Part::Step { flank, start, duration, height } => flank.jet(x, *start, *duration, *height),
             Part::Table(spline) => spline.jet(x),
@@ -402,6 +407,17 @@ impl Lift {
         joints.sort_by(f64::total_cmp);
         joints.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
         joints
+    }
+
+    /// Least and largest value over a turn of a derivative of order 0 to 3 (m or rad over rad); both sides of a joint count.
+    pub fn range(&self, order: usize) -> [f64; 2] {
+        let pieces = pieces(&self.joints());
+        [1.0, -1.0].map(|sign| {
+            let value = |theta: f64| sign * self.jet::<f64>(theta)[order];
+            let sampled: Vec<Vec<f64>> =
+                pieces.iter().map(|piece| piece.iter().map(|theta| value(*theta)).collect()).collect();
+            sign * least(&pieces, &sampled, value).1
+        })
     }
 
     /// Jumps at the joints beside what the laws state.

@@ -51,3 +51,49 @@ fn numbers_that_no_law_has_are_refused() {
     let short = Lift::flanks(Flank::Polynomial345, 0.01, [1.0, 0.0, 1.0]).expect("a law");
     assert!(short.with_polydyne(0.1).is_err());
 }
+
+/// Of flanks that meet at full lift, with each law, ramps and a polydyne correction: at a joint is a value beside it, never a sum of both.
+#[test]
+fn at_a_joint_a_law_has_a_value_of_one_of_its_sides() {
+    for (name, flank) in FLANKS {
+        for dwell in [0.0, 30.0] {
+            let law = Lift::flanks(flank, 0.01, degrees([90.0, dwell, 80.0])).expect("a law");
+            let mut laws = vec![law.clone(), law.clone().with_ramps(1e-4, 0.2).expect("ramps")];
+            laws.extend(law.with_polydyne(0.02));
+            for law in laws {
+                for joint in law.joints() {
+                    let [before, at, after] =
+                        [joint - 1e-9, joint, joint + 1e-9].map(|theta| law.jet::<f64>(theta));
+                    for order in 0..4 {
+                        let beside = [before, after].map(|side| (at[order] - side[order]).abs());
+                        assert!(
+                            beside[0].min(beside[1]) < 1e-6,
+                            "{name} {dwell} at {joint}: {before:?} {at:?} {after:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn ranges_are_those_of_the_handbook() {
+    // Peaks over L/β and L/β² in closed form.
+    let beta = 90_f64.to_radians();
+    let of = |flank| Lift::flanks(flank, 1.0, [beta, 0.0, beta]).expect("a law");
+    let peaks = [
+        (Flank::Harmonic, [0.5 * PI, 0.5 * PI * PI]),
+        (Flank::Polynomial345, [1.875, 10.0 / 3_f64.sqrt()]),
+        (Flank::Cycloid, [2.0, TAU]),
+    ];
+    for (flank, [velocity, acceleration]) in peaks {
+        for (order, peak) in [(1, velocity / beta), (2, acceleration / (beta * beta))] {
+            let [low, high] = of(flank).range(order);
+            assert!(
+                (low / -peak - 1.0).abs() < 1e-9 && (high / peak - 1.0).abs() < 1e-9,
+                "{flank:?} {order}"
+            );
+        }
+    }
+}

@@ -32,6 +32,9 @@ pub struct Recovered {
     pub deviation: f64,
     /// Estimated error of the second derivative of the radius over the polar angle (m/rad²).
     pub second_error: f64,
+    /// Estimate of what it makes of the acceleration, root mean square over the cam angle (m or rad over rad²). Where points lie unequally
+    /// the error may be a fifth of it or three times as large.
+    pub acceleration_error: f64,
     /// Points that were left out, by their index.
     pub outliers: Vec<usize>,
 }
@@ -67,6 +70,23 @@ const HIDDEN: f64 = 0.5;
 
 /// Places of the recovered motion.
 const PLACES: usize = 720;
+
+/// Share of an error of the second derivative that tells what it makes of the acceleration.
+const SMALL: f64 = 1e-3;
+
+/// Cam angle, motion there, and the error of its acceleration.
+type Touched = ((f64, [f64; 3]), f64);
+
+/// Root mean square of the errors over the cam angle, in whose order the places are.
+fn mean_square(places: &[Touched]) -> f64 {
+    let count = places.len();
+    let angle = |k: usize| places[k % count].0.0;
+    let sum = (0..count).map(|k| {
+        let width = (angle(k + 1) - angle(k + count - 1)).rem_euclid(TAU);
+        0.5 * width * places[k].1.powi(2)
+    });
+    (sum.sum::<f64>() / TAU).sqrt()
+}
 
 impl Profile {
     /// From polar angles (rad), in any order, and radii (m). A point that stands twice, as at both ends of a turn, is one.
@@ -155,13 +175,21 @@ impl Profile {
                 1e3 * second_error
             ));
         }
-        let mut motion = Vec::with_capacity(PLACES);
+        let mut places = Vec::with_capacity(PLACES);
         for k in 0..PLACES {
-            motion.push(touched(&spline, TAU * k as f64 / PLACES as f64, follower, direction)?);
+            let polar = TAU * k as f64 / PLACES as f64;
+            let radius = spline.derivatives(polar);
+            let found = touched(radius, polar, follower, direction)?;
+            // A small share of the error, for the motion is not linear in it.
+            let [r, slope, bent, rest] = radius;
+            let beside = touched([r, slope, bent + SMALL * second_error, rest], polar, follower, direction)?;
+            places.push((found, (beside.1[2] - found.1[2]) / SMALL));
         }
-        motion.sort_by(|a: &(f64, [f64; 3]), b| a.0.total_cmp(&b.0));
+        places.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        let acceleration_error = mean_square(&places);
         outliers.sort_unstable();
-        Ok(Recovered { motion, knots, deviation: advice.deviation, second_error, outliers })
+        let (motion, deviation) = (places.into_iter().map(|place| place.0).collect(), advice.deviation);
+        Ok(Recovered { motion, knots, deviation, second_error, acceleration_error, outliers })
     }
 
     /// Angles and radii of the points that are kept.
@@ -276,15 +304,17 @@ fn deviation(magnitudes: &[f64]) -> f64 {
 }
 
 /// Cam angle in [−π, π) at which the follower touches the contour at a polar angle, and its motion there.
+///
+/// `radius`: of the contour at that polar angle, with three derivatives.
 fn touched(
-    spline: &Spline,
+    radius: [f64; 4],
     polar: f64,
     follower: &Follower,
     direction: Direction,
 ) -> Result<(f64, [f64; 3]), CamError> {
     let sigma = direction.sign();
     let number = Jet::<f64>::constant;
-    let radius = Jet::of_derivatives(spline.derivatives(polar));
+    let radius = Jet::of_derivatives(radius);
     let contour = Plane::direction(Jet::variable(polar)).times(radius);
     let rate = contour.rate();
     // Counter-clockwise over the polar angle: outward is on the right.
@@ -344,7 +374,8 @@ fn touched(
     let runs_against = speed.value() * sigma < 0.0;
     if !runs_against {
         let why = format!(
-            "at a polar angle of {:.2} deg the follower cannot touch: the flank is hollow there",
+            "at a polar angle of {:.2} deg the follower cannot touch: the flank is hollow there\n\
+             help: noise of dense points may make it so: leave some of them out, or measure finer",
             polar.to_degrees()
         );
         return Err(CamError::Value("measured profile", why));

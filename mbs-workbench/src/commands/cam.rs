@@ -33,6 +33,8 @@ fn shown(name: &str, value: f64) -> String {
     match name {
         "pressure angle" => format!("{:.4} deg", value.to_degrees()),
         "Hertz pressure" => format!("{:.2} MPa", 1e-6 * value),
+        // Next to a place where a face stands still radii have no bound.
+        _ if value.abs() >= 1e3 => format!("{:.3e} mm", 1e3 * value),
         _ => format!("{:.5} mm", 1e3 * value),
     }
 }
@@ -114,7 +116,7 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
         for (one, places) in all.iter().zip(&places) {
             let suffix = one.name.to_uppercase();
             let constant = if suffix.is_empty() { constant.clone() } else { format!("{constant}_{suffix}") };
-            code += &rust(&constant, &name, places).map_err(CommandError::Failed)?;
+            code += &rust(&constant, &name, &one.cam, places).map_err(CommandError::Failed)?;
         }
         out.put("code", &code);
         return Ok(out.write_all(code.as_bytes())?);
@@ -209,6 +211,7 @@ fn recover(arguments: &Arguments, directory: &Path, out: &mut Output) -> Result<
     out.put("knots", found.knots);
     out.put("deviation", found.deviation);
     out.put("second_error", found.second_error);
+    out.put("acceleration_error", found.acceleration_error);
     out.put("outliers", outliers.len());
     writeln!(out, "points       {}, {} of them outliers that are left out", pairs.len(), outliers.len())?;
     writeln!(out, "spline       periodic quintic with {} knots, as the noise allows", found.knots)?;
@@ -219,7 +222,13 @@ fn recover(arguments: &Arguments, directory: &Path, out: &mut Output) -> Result<
         let values = || found.motion.iter().map(|(_, motion)| factor * motion[order]);
         let (low, high) =
             (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-        writeln!(out, "{name:<13}{low:.4} to {high:.4} {unit}{}", ["", "/rad", "/rad^2"][order])?;
+        let per = ["", "/rad", "/rad^2"][order];
+        let known = match order {
+            2 => format!(", known to about {:.1e}, root mean square", factor * found.acceleration_error),
+            _ => String::new(),
+        };
+        let [low, high] = [low, high].map(unsigned_zero);
+        writeln!(out, "{name:<13}{low:.4} to {high:.4} {unit}{per}{known}")?;
     }
     if let Some(least) = least_off_the_base(found.motion.iter().map(|(_, motion)| motion[0])) {
         let least = factor * least;
@@ -339,6 +348,11 @@ fn describe(out: &mut Output, all: &[Made], sentences: &[String]) {
     }
 }
 
+/// A number of four decimals; what rounds to 0 has no sign.
+fn unsigned_zero(value: f64) -> f64 {
+    if value.abs() < 0.5e-4 { 0.0 } else { value }
+}
+
 fn print_law(
     out: &mut Output,
     lift: &Lift,
@@ -354,18 +368,15 @@ fn print_law(
     let table = table.map_or_else(String::new, |table| format!("; {table}"));
     match continuity.stated {
         SMOOTH => writeln!(out, "law          all derivatives are continuous{table}")?,
+        1 => writeln!(out, "law          1 continuous derivative, {checked}{table}")?,
         count => writeln!(out, "law          {count} continuous derivatives, {checked}{table}")?,
     }
     for order in 0..3 {
         let (name, unit) = [("lift", ""), ("velocity", "/rad"), ("acceleration", "/rad^2")][order];
-        let values: Vec<f64> =
-            (0..720).map(|k| lift.jet(lift.origin() + f64::from(k).to_radians() / 2.0)[order]).collect();
-        let [low, high] = [
-            values.iter().copied().fold(f64::INFINITY, f64::min),
-            values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        ];
+        let [low, high] = lift.range(order);
         let (factor, base) = if by_angle { (1_f64.to_degrees(), "deg") } else { (1e3, "mm") };
-        writeln!(out, "{name:<13}{:.4} to {:.4} {base}{unit}", factor * low, factor * high)?;
+        let [low, high] = [low, high].map(|value| unsigned_zero(factor * value));
+        writeln!(out, "{name:<13}{low:.4} to {high:.4} {base}{unit}")?;
     }
     Ok(())
 }

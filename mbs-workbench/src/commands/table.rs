@@ -93,7 +93,8 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     let (spline, gain) = fitted.map_err(|error| named(explain(error, &points)))?;
     let source = file.file_name().map_or_else(|| "table".into(), |name| name.to_string_lossy().into_owned());
     if let Some(name) = &arguments.rust {
-        let code = constant::rust(name, &source, &points, &spline);
+        let (largest, ..) = spline.residual(&points.x, &points.y);
+        let code = constant::rust(name, &source, &points, &spline, largest);
         out.put("code", &code);
         return Ok(out.write_all(code.as_bytes())?);
     }

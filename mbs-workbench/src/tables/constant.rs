@@ -7,8 +7,9 @@ use super::{Points, Spline};
 
 /// `pub const NAME: … = …;` with documentation; needs `mbs_runtime` alone.
 ///
-/// `source` is the file's name. Numbers are the shortest that read back as the same bits.
-pub fn rust(name: &str, source: &str, points: &Points, spline: &Spline) -> String {
+/// `source` is the file's name, `largest` the largest error of the spline in its unit. Numbers are the shortest that read back as the
+/// same bits.
+pub fn rust(name: &str, source: &str, points: &Points, spline: &Spline, largest: f64) -> String {
     let [across, up] = [&points.columns.x.1.coherent, &points.columns.y.1.coherent];
     let [x, y] = &points.names;
     let (count, points_read) = (spline.knots.len(), points.x.len());
@@ -16,7 +17,6 @@ pub fn rust(name: &str, source: &str, points: &Points, spline: &Spline) -> Strin
         Pieces::Cubic(_) => ("cubic", "CubicSpline", None),
         Pieces::Quintic(_, period) => ("periodic quintic", "PeriodicQuintic", Some(*period)),
     };
-    let (largest, ..) = spline.residual(&points.x, &points.y);
     let mut text = String::new();
     let _ = writeln!(
         text,

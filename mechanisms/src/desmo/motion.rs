@@ -105,10 +105,14 @@ impl Misfit {
     /// At `places` cam angles of a turn, shifted by the share `shift` of their distance.
     ///
     /// # Errors
-    /// Those of [`Stepper::assemble`] and [`Stepper::advance_to`], where the cams contradict each other by more than the text allows.
+    /// Those of [`Stepper::assemble`] and [`Stepper::advance_to`]. Cams of coarse tables may contradict each other by more than the text
+    /// allows: the row yields by twice what permanent contact without it leaves.
     pub fn of(design: &Design, pitch: &[Curve; 2], places: u32, shift: f64) -> Result<Self, Failure> {
         let mut mechanism: DesmoHeld<_> = design.moved_by(pitch.clone()).scene();
         mechanism.speed = 1.0;
+        let free = Permanent::of(design, pitch, places, shift)?;
+        let apart = free.apart.iter().fold(0.0, |most: f64, apart| most.max(apart.abs()));
+        mechanism.misfit = mechanism.misfit.max(2.0 * apart);
         let mut stepper = Stepper::assemble(mechanism, [-PI, 0.0, 0.0, 0.0], 0.0)?;
         let mut found = Misfit::default();
         for step in 0..places {

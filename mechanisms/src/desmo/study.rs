@@ -11,7 +11,7 @@ use mbs_workbench::cams::lift::Lift;
 use mbs_workbench::study::{Parameter, Range, Report, Study, StudyError, Values};
 
 use super::Design;
-use super::design::Curve;
+use super::design::{Curve, Rocker};
 use super::motion::{Ordinary, Turn, Valvetrain};
 
 /// `mbs study desmo`.
@@ -36,7 +36,20 @@ pub const STUDY: Study = Study {
         parameter("valve_mass", "kg", 0.028, Range::Positive, "mass of the valve"),
         parameter("opener_inertia", "kg*m^2", 1.3e-5, Range::Positive, "moment of inertia about the pivot"),
         parameter("closer_inertia", "kg*m^2", 2.2e-5, Range::Positive, "moment of inertia about the pivot"),
-        parameter("preload", "N*m", 1.2, Range::Any, "torque of the helper spring at lift 0"),
+        parameter(
+            "preload",
+            "N*m",
+            1.2,
+            Range::Any,
+            "torque of the helper spring at lift 0, which closes the valve",
+        ),
+        parameter(
+            "winding",
+            "N*m",
+            1.0,
+            Range::Positive,
+            "growth of that torque, for each radian of the closer",
+        ),
         parameter(
             "spring",
             "N/m",
@@ -48,6 +61,7 @@ pub const STUDY: Study = Study {
         parameter("drag", "N*s/m", 2.0, Range::NotNegative, "viscous friction of the guide"),
         parameter("dry", "N", 3.0, Range::NotNegative, "dry friction of the guide"),
         parameter("swing", "rad", 0.0, Range::Any, "amplitude of a harmonic of the cam's angle"),
+        parameter("order", "1", 2.0, Range::Whole(1, 1000), "waves of that harmonic over a turn"),
         parameter(
             "points",
             "1",
@@ -64,6 +78,22 @@ pub const STUDY: Study = Study {
             Range::Within(0.0, 0.9),
             "half the width of the perturbations of K, D and clearances",
         ),
+        place("centre_x", 0.012, "centre of both cams; the valve's tip is at 0, 0 and opens along -y"),
+        place("centre_y", 0.020, "its height"),
+        place("opener_x", 0.031, "pivot of the opener"),
+        place("opener_y", 0.001, "its height"),
+        place("opener_pad_x", 0.013, "centre of the opener's pad on its cam at lift 0"),
+        place("opener_pad_y", -0.003_98, "its height"),
+        parameter("opener_radius", "m", 0.012, Range::Positive, "radius of that pad"),
+        place("opener_tip_x", 0.0, "centre of the opener's pad on the valve at lift 0"),
+        place("opener_tip_y", 0.008, "its height, the radius of that pad"),
+        place("closer_x", 0.035, "pivot of the closer"),
+        place("closer_y", -0.009, "its height"),
+        place("closer_pad_x", CLOSER_PAD[0], "centre of the closer's pad on its cam at lift 0"),
+        place("closer_pad_y", CLOSER_PAD[1], "its height"),
+        parameter("closer_radius", "m", 0.012, Range::Positive, "radius of that pad"),
+        place("closer_fork_x", 0.0, "centre of the closer's pad under the valve at lift 0"),
+        place("closer_fork_y", -0.012, "its height"),
     ],
     takes_law: true,
     run: study,
@@ -77,6 +107,54 @@ const fn parameter(
     about: &'static str,
 ) -> Parameter {
     Parameter { name, unit, value, range, about }
+}
+
+/// A coordinate of a place.
+const fn place(name: &'static str, value: f64, about: &'static str) -> Parameter {
+    parameter(name, "m", value, Range::Any, about)
+}
+
+/// The pad of [`Design::ready`] on the closing cam, 29 mm from its pivot and from the cams' centre.
+const CLOSER_PAD: [f64; 2] = [0.040_993_241_656_412_2, 0.019_373_950_279_223_47];
+
+/// The pair with the places of the values. A cam that does not do what its rocker is for is refused.
+fn design(values: &Values, law: Lift, direction: Direction) -> Result<Design, StudyError> {
+    let at = |name: &str| [format!("{name}_x"), format!("{name}_y")].map(|name| values.get(&name));
+    let rocker = |name: &str, tip: &str| Rocker {
+        pivot: at(name),
+        cam_pad: at(&format!("{name}_pad")),
+        radius: values.get(&format!("{name}_radius")),
+        valve_pad: at(&format!("{name}_{tip}")),
+    };
+    let (opener, closer) = (rocker("opener", "tip"), rocker("closer", "fork"));
+    for (name, Rocker { cam_pad, radius, .. }) in [("opener", &opener), ("closer", &closer)] {
+        let [x, y] = [0, 1].map(|axis| cam_pad[axis] - at("centre")[axis]);
+        if x.hypot(y) <= *radius {
+            return Err(StudyError(format!(
+                "the pad of the {name}, {:.3} mm in radius, covers the cams' centre, which is {:.3} mm from its own\n\
+                 help: make `{name}_radius` smaller, or move `{name}_pad_x` and `{name}_pad_y` away from there",
+                1e3 * radius,
+                1e3 * x.hypot(y)
+            )));
+        }
+    }
+    let design = Design { law, direction, centre: at("centre"), opener, closer };
+    let cams = design.cams().map_err(|error| {
+        // A length of 11 is one of 11 m.
+        let is_long = STUDY.parameters.iter().any(|one| one.unit == "m" && values.get(one.name).abs() >= 0.5);
+        let hint =
+            if is_long { "\nhelp: lengths without a unit are in m; write `--param lift=11mm`" } else { "" };
+        StudyError(format!("{error}{hint}"))
+    })?;
+    for (cam, (name, opens)) in cams.iter().zip([("opener", true), ("closer", false)]) {
+        if cam.opens() != Some(opens) {
+            let does = if opens { "closes" } else { "opens" };
+            return Err(StudyError(format!(
+                "the cam of the {name} {does} the valve\nhelp: put its pad on the cam, or that on the valve, on the other side of the pivot"
+            )));
+        }
+    }
+    Ok(design)
 }
 
 /// Values of a study, both cams, and the valvetrain without speed.
@@ -138,7 +216,7 @@ impl<'a> Chain<'a> {
                 1e3 * lift
             )));
         }
-        let design = Design::ready(law, direction);
+        let design = design(values, law, direction)?;
         let cams = design.cams().map_err(failed)?;
         let mut curves = design.curves().map_err(failed)?;
         match values.get("points") {
@@ -166,10 +244,14 @@ impl<'a> Chain<'a> {
         valvetrain.valve_mass = value("valve_mass");
         valvetrain.opener_inertia = value("opener_inertia");
         valvetrain.closer_inertia = value("closer_inertia");
-        valvetrain.preload = value("preload");
+        // The text counts it clockwise, which closes the valve where the fork is on the left of the pivot.
+        let closer = &self.design.closer;
+        valvetrain.preload = (closer.pivot[0] - closer.valve_pad[0]).signum() * value("preload");
+        valvetrain.winding = value("winding");
         valvetrain.drag = value("drag");
         valvetrain.dry = value("dry");
         valvetrain.swing = value("swing");
+        valvetrain.order = value("order");
         valvetrain
     }
 
@@ -224,7 +306,8 @@ fn tables([opening, shutting]: &[Curve; 2], points: u32) -> Result<[Curve; 2], S
 fn study(values: &Values, say: &mut dyn FnMut(&str)) -> Result<Report, StudyError> {
     let chain = Chain::of(values)?;
     say("synthesis");
-    let mut sections = vec![chain::synthesis(&chain)?];
+    let (synthesis, undercut) = chain::synthesis(&chain)?;
+    let mut sections = vec![synthesis];
     say("kinematic check");
     sections.push(chain::kinematics(&chain)?);
     let mut sentence = String::new();
@@ -232,7 +315,7 @@ fn study(values: &Values, say: &mut dyn FnMut(&str)) -> Result<Report, StudyErro
         say(&format!("motion at {:.0} 1/min", speed * 30.0 / PI));
         let (section, said) = chain::dynamics(&chain, speed)?;
         sections.push(section);
-        sentence = said;
+        sentence = said + &undercut;
     }
     say("valve spring");
     sections.push(chain::spring(&chain)?);

@@ -155,11 +155,98 @@ fn a_study_refuses_values_that_it_cannot_run_with() {
     for (name, value, expected) in [
         ("points", 3.0, "`points` is 0 or at least 16"),
         ("lift", 0.1, "does not reach the cam"),
+        ("lift", 11.0, "help: lengths without a unit are in m"),
+        ("opener_tip_x", 0.06, "the cam of the opener closes the valve\nhelp: put its pad"),
+        ("opener_radius", 0.04, "the pad of the opener, 40.000 mm in radius, covers the cams' centre"),
+        ("closer_fork_x", 0.1, "the cam of the closer opens the valve\nhelp: put its pad"),
         ("open_play", 0.05, "50.030 mm together, half of the lift of 11.000 mm or more"),
     ] {
         let mut values = Values::of(&STUDY);
         values.set(name, value).expect("a parameter");
         let refused = (STUDY.run)(&values, &mut |_| ()).map(|_| ()).expect_err(name).to_string();
         assert!(refused.contains(expected), "{name}: {refused}");
+    }
+}
+
+/// The places of the study are those of the ready pair.
+#[test]
+fn the_study_begins_with_the_ready_pair() {
+    let law = Design::law(0.011, 160_f64.to_radians()).expect("a law");
+    let ready = Design::ready(law, Direction::CounterClockwise);
+    let (values, [opener, closer]) = (Values::of(&STUDY), [&ready.opener, &ready.closer]);
+    for (name, place) in [
+        ("centre", ready.centre),
+        ("opener", opener.pivot),
+        ("opener_pad", opener.cam_pad),
+        ("opener_tip", opener.valve_pad),
+        ("closer", closer.pivot),
+        ("closer_pad", closer.cam_pad),
+        ("closer_fork", closer.valve_pad),
+    ] {
+        for (axis, coordinate) in ["x", "y"].into_iter().zip(place) {
+            assert!((values.get(&format!("{name}_{axis}")) - coordinate).abs() < 1e-17, "{name}_{axis}");
+        }
+    }
+    assert_eq!([values.get("opener_radius"), values.get("closer_radius")], [opener.radius, closer.radius]);
+}
+
+/// Coarse tables of a high lift contradict each other by more than the text allows: the mismatch is told, as that of fine ones.
+#[test]
+fn coarse_tables_of_a_high_lift_have_a_mismatch() {
+    let law = Design::law(0.020, 160_f64.to_radians()).expect("a law");
+    let design = Design::ready(law, Direction::CounterClockwise);
+    let tables = design.curves().expect("a pair of cams").map(|curve| curve.table(90).expect("a table"));
+    let largest = Misfit::of(&design, &tables, 1440, 0.37).expect("a row that yields").largest();
+    assert!(largest[0] > 1e-5 && largest[0] < 1e-4, "{largest:?}");
+}
+
+/// Whole studies, in which every number is computed.
+#[cfg(feature = "long")]
+mod whole {
+    use super::*;
+
+    /// Tables and sentence of a study with these values.
+    fn tables(changes: &[(&str, f64)]) -> (String, Vec<Vec<Vec<String>>>) {
+        let mut values = Values::of(&STUDY);
+        for (name, value) in [("runs", 1.0), ("turns", 1.0)].iter().chain(changes) {
+            values.set(name, *value).expect("a parameter");
+        }
+        let report = (STUDY.run)(&values, &mut |_| ()).expect("a report");
+        let rows = report.sections.into_iter().flat_map(|section| section.tables).map(|table| table.rows);
+        (report.sentence, rows.collect())
+    }
+
+    /// Places are parameters: the mirror image of the ready pair, whose cams turn the other way, has its figures.
+    #[test]
+    fn a_mirrored_valvetrain_has_the_figures_of_the_ready_one() {
+        let of_x = STUDY.parameters.iter().filter(|one| one.name.ends_with("_x"));
+        let mut mirrored = vec![("sense", -1.0)];
+        mirrored.extend(of_x.map(|one| (one.name, -one.value)));
+        assert_eq!(mirrored.len(), 8);
+        let ((_, ready), (_, mirror)) = (tables(&[]), tables(&mirrored));
+        // Rounding moves the instants at which largest values are looked for.
+        let is_near = |a: &String, b: &String| match (a.parse::<f64>(), b.parse::<f64>()) {
+            (Ok(a), Ok(b)) => (a - b).abs() <= 1e-3 * a.abs().max(b.abs()),
+            _ => a == b,
+        };
+        // Synthesis, then peaks at both speeds, with the spring, and of the sensitivity.
+        for table in [0, 4, 5, 6, 7] {
+            let cells = ready[table].iter().flatten().zip(mirror[table].iter().flatten());
+            for (own, other) in cells {
+                assert!(is_near(own, other), "table {table}: {own} {other}");
+            }
+        }
+    }
+
+    /// A high lift has coarse tables that contradict each other, a slow cam small figures, a quick one an undercut.
+    #[test]
+    fn a_study_ends_with_values_far_from_its_own() {
+        let (_, high) = tables(&[("lift", 0.02)]);
+        assert_eq!(high[2].len(), 4, "{:?}", high[2]);
+        let (said, slow) = tables(&[("speed", 10.0), ("slow", 5.0)]);
+        assert!(!said.contains(" 0.0 km"), "{said}");
+        assert!(slow[4..6].iter().flatten().all(|row| row[1] != "0.0"), "{slow:?}");
+        let (said, _) = tables(&[("duration", 80_f64.to_radians())]);
+        assert!(said.contains("The opening cam is undercut at "), "{said}");
     }
 }

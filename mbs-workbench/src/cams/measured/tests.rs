@@ -54,6 +54,16 @@ fn errors(cam: &Cam, found: &Recovered) -> [f64; 2] {
     [(squares / found.motion.len() as f64).sqrt() / largest(2), lift / largest(0)]
 }
 
+/// Root mean square over the cam angle.
+fn mean_square_of(found: &Recovered, value: impl Fn(f64, &[f64; 3]) -> f64) -> f64 {
+    let motion = &found.motion;
+    let sum = (0..motion.len()).map(|k| {
+        let [before, after] = [k + motion.len() - 1, k + 1].map(|place| motion[place % motion.len()].0);
+        0.5 * (after - before).rem_euclid(TAU) * value(motion[k].0, &motion[k].1).powi(2)
+    });
+    (sum.sum::<f64>() / TAU).sqrt()
+}
+
 fn recovered(cam: &Cam, points: &[[f64; 2]]) -> Result<Recovered, CamError> {
     Profile::cartesian(points).and_then(|profile| profile.motion(&cam.follower, cam.direction))
 }
@@ -80,6 +90,12 @@ fn the_law_is_recovered_from_its_own_profile() {
             assert!(found.outliers.is_empty(), "{follower:?} {noise:e}: {:?}", found.outliers);
             assert!(errors[0] < bounds[0] && errors[1] < bounds[1], "{follower:?} {noise:e}: {errors:?}");
             worst[step] = [0, 1].map(|k| worst[step][k].max(errors[k]));
+            if noise >= 1e-6 {
+                let squares =
+                    mean_square_of(&found, |theta, motion| motion[2] - cam.lift.jet::<f64>(theta)[2]);
+                let share = squares / found.acceleration_error;
+                assert!((0.1..4.0).contains(&share), "{follower:?} {noise:e}: {share} of the estimate");
+            }
         }
     }
     for ((noise, bounds), [acceleration, lift]) in BOUNDS.into_iter().zip(worst) {

@@ -318,3 +318,24 @@ fn the_lift_of_a_measured_profile_is_a_law_and_a_law_is_no_path() {
     assert_eq!(law_options::written(spline).expect("a law").name, spline);
     assert_eq!(law_options::written(&file("lift.csv")).expect("a law").name, "lift.csv");
 }
+
+/// Columns stay apart: an arm that outruns its cam has radii without bound, and a rest that rounding leaves is 0 without a sign.
+#[test]
+fn columns_of_limits_stay_apart() {
+    assert_eq!(shown("undercut", -5.7e22), "-5.700e25 mm");
+    assert_eq!(shown("undercut", -0.999), "-999.00000 mm");
+    assert_eq!(shown("Hertz pressure", 1e9), "1000.00 MPa");
+    assert!(unsigned_zero(-1e-6).is_sign_positive() && unsigned_zero(-1e-4) == -1e-4);
+    let folder = target_directory().join("tmp").join("cam_of_a_quick_arm");
+    let words = "cycloid --lift 50deg --rise 30deg --follower oscillating-flat --base 20mm --pivot 80mm,0mm --half-face 60mm";
+    let mut text = Vec::new();
+    run(&parsed(&format!("{words} --out {}", folder.display()), None), &mut Output::new(&mut text, None))
+        .expect("a page");
+    let text = String::from_utf8(text).expect("UTF-8");
+    let rows = text.lines().skip_while(|line| !line.starts_with("limit")).skip(1);
+    for row in rows.take_while(|line| !line.starts_with("files")) {
+        assert!(row.chars().count() <= 80 && !row.contains("mm-"), "{row}");
+        let gaps = row.matches("mm ").count();
+        assert_eq!(gaps, 2, "{row}");
+    }
+}

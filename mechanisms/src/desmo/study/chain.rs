@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use mbs_workbench::cams::limits::{Limits, examine};
+use mbs_workbench::cams::limits::{Limit, Limits, Verdict, examine};
 use mbs_workbench::cams::noise;
 use mbs_workbench::study::{Picture, Section, StudyError, Table};
 
@@ -19,12 +19,28 @@ const SHOWN: u32 = 180;
 /// Places of the comparison with the law, beside the points of every table, as a share of their distance.
 const OFFSET: f64 = 0.37;
 
+/// A number with these decimals, in powers of ten where they show less than two digits of it.
+fn figure(value: f64, decimals: usize) -> String {
+    let is_small = value != 0.0 && value.abs() < 10_f64.powi(1 - decimals as i32);
+    if is_small { format!("{value:.1e}") } else { format!("{value:.decimals$}") }
+}
+
 fn revolutions(speed: f64) -> f64 {
     speed * 30.0 / PI
 }
 
-/// Both cams from the law: sizes, curvature, pressure angle.
-pub fn synthesis(chain: &Chain) -> Result<Section, StudyError> {
+/// Both cams from the law: sizes, curvature, pressure angle; the second part says which of them is undercut.
+pub fn synthesis(chain: &Chain) -> Result<(Section, String), StudyError> {
+    /// Bounds that all values are compared with: any ones, for the values themselves are shown.
+    const ALL: Limits = Limits {
+        radius: Some(1e-3),
+        wheel: Some(1.0),
+        pressure_angle: Some(1.0),
+        hertz: None,
+        half_face: None,
+        outer: Some(1.0),
+        shaft: None,
+    };
     let mut table = Table::new([
         "cam",
         "radii (mm)",
@@ -34,41 +50,53 @@ pub fn synthesis(chain: &Chain) -> Result<Section, StudyError> {
         "sliding (mm/rad)",
         "undercut",
     ]);
+    let mut undercut = String::new();
     for (name, cam) in ["opening", "closing"].into_iter().zip(&chain.cams) {
-        let (mut near, mut far) = (f64::INFINITY, 0.0_f64);
-        let (mut convex, mut hollow, mut pressure, mut sliding) =
-            (f64::INFINITY, f64::INFINITY, 0.0_f64, 0.0_f64);
-        for k in 0..1440 {
-            let place = cam.place(TAU * f64::from(k) / 1440.0 - PI);
-            let radius = place.contour[0].hypot(place.contour[1]);
-            (near, far) = (near.min(radius), far.max(radius));
-            match place.radius > 0.0 {
-                true => convex = convex.min(place.radius),
-                false => hollow = hollow.min(-place.radius),
-            }
-            pressure = pressure.max(place.pressure.abs());
-            sliding = sliding.max(place.sliding.abs());
+        let verdicts = examine(cam, &ALL);
+        let [whole, near, convex, hollow, pressure, far] = [
+            Limit::Undercut,
+            Limit::Shaft(0.0),
+            Limit::Radius(1e-3),
+            Limit::Wheel(1.0),
+            Limit::PressureAngle(1.0),
+            Limit::Outer(1.0),
+        ]
+        .map(|limit| verdicts.iter().find(|one| one.limit == limit));
+        let value = |one: Option<&Verdict>| one.map_or(f64::NAN, |one| one.value);
+        let sliding = (0..1440)
+            .fold(0.0, |most: f64, k| most.max(cam.place(TAU * f64::from(k) / 1440.0 - PI).sliding.abs()));
+        let radius = |value: f64, digits: usize| match value.is_finite() && value > 0.0 {
+            true => format!("{:.digits$}", 1e3 * value),
+            false => "-".to_string(),
+        };
+        let broken = [whole, near].into_iter().flatten().find(|one| !one.kept);
+        if let Some(one) = broken {
+            undercut += &format!(
+                " The {name} cam is undercut at {:.1}°: no contour makes this motion, and all forces are those of a pad led along its pitch curve.",
+                one.angle.to_degrees()
+            );
         }
-        let is_whole = examine(cam, &Limits::default()).iter().all(|verdict| verdict.kept);
         table.push([
             name.to_string(),
-            format!("{:.3} to {:.3}", 1e3 * near, 1e3 * far),
-            format!("{:.3}", 1e3 * convex),
-            if hollow.is_finite() { format!("{:.2}", 1e3 * hollow) } else { "-".to_string() },
-            format!("{:.2}", pressure.to_degrees()),
+            format!("{:.3} to {:.3}", 1e3 * value(near), 1e3 * value(far)),
+            radius(value(convex), 3),
+            radius(value(hollow), 2),
+            format!("{:.2}", value(pressure).to_degrees()),
             format!("{:.2}", 1e3 * sliding),
-            if is_whole { "none" } else { "yes" }.to_string(),
+            if broken.is_none() { "none" } else { "yes" }.to_string(),
         ]);
     }
-    Ok(Section {
+    let text = "Closed forms from the lift law to both pitch curves and contours; derivatives are exact. A hollow flank needs a smaller grinding wheel than its R.";
+    let section = Section {
         title: "Synthesis of both cams".to_string(),
-        text: vec!["Closed forms from the lift law to both pitch curves and contours; derivatives are exact. A hollow flank needs a smaller grinding wheel than its R.".to_string()],
+        text: vec![text.to_string() + &undercut],
         tables: vec![table],
         pictures: [moving::kinematic(chain)?, pictures::law(chain)]
             .into_iter()
             .chain(pictures::cams(chain))
             .collect(),
-    })
+    };
+    Ok((section, undercut))
 }
 
 /// Curves of permanent contact: the motion against the law, and the distance of the rockers in closed form and on the tables `of`.
@@ -171,17 +199,17 @@ pub fn kinematics(chain: &Chain) -> Result<Section, StudyError> {
 }
 
 fn row(name: String, turn: &Turn) -> [String; 9] {
-    let force = |force: usize| format!("{:.0}", turn.peak(force));
+    let force = |force: usize| figure(turn.peak(force), 0);
     let torque = turn.torque.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     [
         name,
-        format!("{:.1}", 1e-3 * turn.hardest()),
+        figure(1e-3 * turn.hardest(), 1),
         force(0),
         force(1),
         force(2),
         force(3),
         force(4),
-        format!("{torque:.1}"),
+        figure(torque, 1),
         format!("{:.1}", 100.0 * turn.in_flight()),
     ]
 }
@@ -205,20 +233,18 @@ fn peaks(first: &str) -> Table {
 pub fn dynamics(chain: &Chain, speed: f64) -> Result<(Section, String), StudyError> {
     let [tight, loose] = [false, true].map(|has_play| chain.turn(&case(speed, has_play)));
     let (tight, loose) = (tight?, loose?);
-    let law = (0..1440).fold(0.0, |most: f64, k| {
-        most.max(chain.design.law.jet::<f64>(f64::from(k).to_radians() / 4.0 - PI)[2].abs() * speed * speed)
-    });
+    let law = chain.design.law.range(2).map(f64::abs).into_iter().fold(0.0, f64::max) * speed * speed;
     let mut table = peaks("last turn, largest values");
     table.push(row("no play".to_string(), &tight));
     table.push(row("with play".to_string(), &loose));
     let said = format!(
-        "At {:.0} 1/min the law asks for {:.1} km/s²; the valve has {:.1} km/s² without play and {:.1} km/s² with it, and the opener's cam bears {:.0} N and {:.0} N.",
+        "At {:.0} 1/min the law asks for {} km/s²; the valve has {} km/s² without play and {} km/s² with it, and the opener's cam bears {} N and {} N.",
         revolutions(speed),
-        1e-3 * law,
-        1e-3 * tight.hardest(),
-        1e-3 * loose.hardest(),
-        tight.peak(0),
-        loose.peak(0),
+        figure(1e-3 * law, 1),
+        figure(1e-3 * tight.hardest(), 1),
+        figure(1e-3 * loose.hardest(), 1),
+        figure(tight.peak(0), 0),
+        figure(loose.peak(0), 0),
     );
     let balance = format!(
         "Work of the cams since the start: {:.4} J without play, {:.4} J with it; energy, contacts and guide account for it to {:.0e} and {:.0e} of the work.",
@@ -268,11 +294,11 @@ pub fn spring(chain: &Chain) -> Result<Section, StudyError> {
         let flying = (0..law.len()).filter(is_open).filter(flies).count();
         table.push([
             format!("{:.0} 1/min", revolutions(speed)),
-            format!("{:.1}", 1e-3 * turn.hardest()),
-            format!("{:.0}", turn.peak(0)),
-            format!("{:.0}", turn.peak(1)),
-            format!("{:.0}", turn.peak(2)),
-            format!("{:.3}", 1e3 * off),
+            figure(1e-3 * turn.hardest(), 1),
+            figure(turn.peak(0), 0),
+            figure(turn.peak(1), 0),
+            figure(turn.peak(2), 0),
+            figure(1e3 * off, 3),
             format!("{:.1}", 100.0 * flying as f64 / open.max(1) as f64),
         ]);
         turns.push((format!("{:.0} 1/min", revolutions(speed)), turn));
@@ -349,13 +375,7 @@ pub fn envelope(chain: &Chain) -> Result<Section, StudyError> {
     let mut table = Table::new(["largest value of a turn", "5 %", "median", "95 %", "95 % over 5 %"]);
     let mut line = |name: String, values: Vec<f64>| {
         let [low, median, high] = quantiles(values);
-        table.push([
-            name,
-            format!("{low:.1}"),
-            format!("{median:.1}"),
-            format!("{high:.1}"),
-            format!("{:.2}", high / low),
-        ]);
+        table.push([name, figure(low, 1), figure(median, 1), figure(high, 1), format!("{:.2}", high / low)]);
     };
     line("valve (km/s²)".to_string(), turns.iter().map(|turn| 1e-3 * turn.hardest()).collect());
     for (force, name) in FORCES.iter().enumerate() {
