@@ -102,9 +102,9 @@ fn contributions_are_differences_and_the_scene_to_paste_compiles() {
     );
     let paste = result.to_paste();
     assert_eq!(paste, "scene Enough = strong;");
-    let others = "scene Others = weak + opposed; scene More = strong;";
+    // It alone, in the text as it is.
     let whole = TEXT.replace("effect faulty { coord y: m; }", "");
-    assert!(mbs_codegen::expand_source(&format!("{whole}\n{paste}\n{others}")).is_ok());
+    assert!(mbs_codegen::expand_source(&format!("{whole}\n{paste}")).is_ok());
     assert!(result.page().contains("const DATA = {") && !result.page().contains("{{"));
     assert_eq!(result.csv().lines().count(), 4);
 }
