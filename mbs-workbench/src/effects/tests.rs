@@ -144,6 +144,12 @@ fn runs_with_errors_of_their_own_are_not_comparable() {
     other.outputs[0].envelope = wider(0.001);
     let size = changes(&whole, &other, &times, 0.01)[0].size.clone().expect("comparable");
     assert!((size.largest - (0.007 + 0.001) / 1.001).abs() < 1e-3, "{size:?}");
+    let mut none = other.clone();
+    (none.outputs[0].envelope, none.outputs[0].values[3]) = (None, f64::NAN);
+    for (a, b) in [(&whole, &none), (&none, &other)] {
+        let reason = changes(a, b, &times, 0.01)[0].size.clone().expect_err("no number");
+        assert!(reason.contains("is no number at t = 0.3 s"), "{reason}");
+    }
     other.outputs.clear();
     assert!(changes(&whole, &other, &times, 0.01)[0].size.is_err());
 }
