@@ -116,8 +116,14 @@ fn translate(
             translated.push(whole);
             None
         }
-        Some(Err(faults)) => Some(faults),
+        Some(Err(faults)) => {
+            scenes.report_unused(diagnostics);
+            Some(faults)
+        }
     };
+    if !diagnostics.is_empty() {
+        return None;
+    }
     Some(emit::rust::rust(text, scenes, &translated, left_out.as_ref(), lengths))
 }
 

@@ -198,3 +198,26 @@ fn views_of_a_scene_are_asked_for_by_its_name() {
     assert!(whole.contains("`d` is declared twice"), "{whole}");
     assert!(mbs_codegen::formulas(text, Some("AllEffects")).is_err());
 }
+
+#[test]
+fn a_scene_may_stand_in_a_text_without_others_where_all_effects_are_one() {
+    for (common, effect) in TEXTS {
+        let effects = format!("effect none {{}} effect extra {{ {effect} }}");
+        let text = format!("mechanism M; {common} {effects} scene Enough = none;");
+        let both = format!("mechanism M; {common} {effects} scene Enough = none; scene All = none + extra;");
+        // Fields of the effect that it leaves out are those of `AllEffects`.
+        for scene in ["Enough", "AllEffects"] {
+            assert_eq!(items(&text, Some(scene)), items(&both, Some(scene)), "{effect}");
+        }
+    }
+    // A function of such an effect is a type parameter.
+    let text = "mechanism M; coord x: m = 0; body b { mass: 1kg, com: [x, 0] } effect pull { force pull: 1N on x; }
+         effect table { param share: 1 = 0.5; function load: N(m), C1; force pressed: share*load(x) on x; } scene Enough = pull;";
+    let code = mbs_codegen::expand_source(text).expect("a valid text").to_string();
+    assert!(code.contains("Load") && code.contains("share"));
+    // Two drives of one coordinate: all effects are no scene, so each belongs to one.
+    let text = "mechanism M; coord a: rad; effect slow { drive d: a == 1rad*t/1s; } effect fast { drive e: a == 2rad*t/1s; }
+         scene Slow = slow;";
+    let fault = mbs_codegen::expand_source(text).expect_err("no scene has it");
+    assert!(fault.contains("no scene selects effect `fast`"), "{fault}");
+}

@@ -36,6 +36,7 @@ pub mod geneva;
 pub mod governor;
 pub mod heavy_top;
 pub mod jansen;
+pub mod kerb;
 pub mod known;
 pub mod loop_length;
 pub mod loop_relative;
@@ -106,6 +107,7 @@ pub static CATALOGUE: Catalogue = Catalogue {
         heavy_top::CARD,
         car_axis::CARD,
         quarter_car::CARD,
+        kerb::CARD,
         bricard::CARD,
         governor::CARD,
         slider_crank_engine::CARD,

@@ -4,11 +4,12 @@ use proc_macro2::TokenStream;
 
 use super::declared_functions::check_called;
 use super::scene::Scene;
-use super::selection::{WHOLE, select};
+use super::selection::{WHOLE, report_unused, select};
 use super::{Model, shared, surplus};
 use crate::diagnostics::Diagnostics;
 use crate::syntax;
 use crate::syntax::Text;
+use crate::syntax::ast::Name;
 use crate::syntax::unreadable::{Unreadable, span_at, unreadable};
 
 /// All scenes of a text.
@@ -17,6 +18,8 @@ pub struct Scenes {
     pub scenes: Vec<Scene>,
     /// The whole text in addition to declared scenes; it may be faulty.
     pub whole: Option<Scene>,
+    /// Effects of the whole text alone.
+    unused: Vec<Name>,
     /// The fields of all scenes, and their variables; no other parts.
     pub shared: Model,
 }
@@ -25,7 +28,7 @@ impl Scenes {
     /// Before: a text as written. After: its scenes, every fault of meaning reported. With declared scenes, faults of
     /// the whole text are kept apart, for effects may exclude each other.
     pub fn resolve(text: &Text, diagnostics: &mut Diagnostics) -> Self {
-        let (selections, all) = select(&text.header, &text.statements, diagnostics);
+        let (selections, all, unused) = select(&text.header, &text.statements, diagnostics);
         // A text whose scenes are all faulty is one with scenes nevertheless.
         let declared = text.statements.iter().any(crate::syntax::declares_scene);
         let mut scenes: Vec<Scene> = selections.into_iter().map(Scene::resolve).collect();
@@ -35,12 +38,25 @@ impl Scenes {
         }
         let found: Vec<_> = scenes.iter().map(|scene| (scene.label(), scene.faults.clone())).collect();
         diagnostics.gather(&found, found.len());
-        let shared = shared::merge(&text.statements, (&scenes, whole.as_ref()), diagnostics);
+        if diagnostics.is_empty() && whole.as_ref().is_some_and(|whole| !whole.faults.is_empty()) {
+            report_unused(&unused, diagnostics);
+        }
+        let beside = whole.as_ref().filter(|_| !unused.is_empty() || !diagnostics.is_empty());
+        let shared = shared::merge(&text.statements, (&scenes, beside), diagnostics);
         check_called(&text.statements, diagnostics);
         if diagnostics.is_empty() {
-            surplus::check(&text.statements, scenes.iter().map(|scene| &scene.model), diagnostics);
+            surplus::check(
+                &text.statements,
+                scenes.iter().chain(beside).map(|scene| &scene.model),
+                diagnostics,
+            );
         }
-        Scenes { scenes, whole, shared }
+        Scenes { scenes, whole, unused, shared }
+    }
+
+    /// Reports effects that no declared scene selects. Call it where the whole text is no scene.
+    pub fn report_unused(&self, diagnostics: &mut Diagnostics) {
+        report_unused(&self.unused, diagnostics);
     }
 
     /// `true` if the text declares scenes.

@@ -35,13 +35,13 @@ pub struct Selection {
     pub statements: Vec<Statement>,
 }
 
-/// Before: statements as written. After: one selection a declared scene, and the whole text; faults of effects and
-/// scenes are reported.
+/// Before: statements as written. After: one selection a declared scene, the whole text, and the effects that no declared scene
+/// selects; faults of effects and scenes are reported.
 pub fn select(
     header: &Header,
     statements: &[Statement],
     diagnostics: &mut Diagnostics,
-) -> (Vec<Selection>, Selection) {
+) -> (Vec<Selection>, Selection, Vec<Name>) {
     let mut work = Effects { declared: BTreeMap::new(), parts: Vec::new(), selected: Vec::new() };
     work.divide(statements, diagnostics);
     let scenes: Vec<_> = statements
@@ -67,9 +67,10 @@ pub fn select(
             selections.push(selection);
         }
     }
+    let mut unused = Vec::new();
     if !scenes.is_empty() {
         if diagnostics.is_empty() {
-            work.report_unused(diagnostics);
+            unused = work.unused();
         }
         if header.label() == SCENE_PARAMETER {
             diagnostics.report(
@@ -80,7 +81,7 @@ pub fn select(
         }
     }
     let all: Vec<usize> = (0..work.selected.len()).collect();
-    (selections, work.selection(None, &all))
+    (selections, work.selection(None, &all), unused)
 }
 
 /// Name of the emitted code's type parameter.
@@ -228,15 +229,21 @@ impl<'a> Effects<'a> {
         first.is_some_and(|first| *first != effect)
     }
 
-    /// Reports effects that no scene selects: the whole text alone would contain them.
-    fn report_unused(&self, diagnostics: &mut Diagnostics) {
-        for (name, _) in self.selected.iter().filter(|(name, used)| !used && name.text != NAMELESS) {
-            diagnostics.report(
-                name.span,
-                format!("no scene selects effect `{}`", name.text),
-                format!("add it to a scene: `scene Other = {};`, or remove it", name.text),
-            );
-        }
+    /// Effects that no scene selects: the whole text alone contains them.
+    fn unused(&self) -> Vec<Name> {
+        let unused = self.selected.iter().filter(|(name, used)| !used && name.text != NAMELESS);
+        unused.map(|(name, _)| (*name).clone()).collect()
+    }
+}
+
+/// Reports effects that no scene selects, of a text whose effects together are no scene either.
+pub fn report_unused(unused: &[Name], diagnostics: &mut Diagnostics) {
+    for name in unused {
+        diagnostics.report(
+            name.span,
+            format!("no scene selects effect `{}`", name.text),
+            format!("add it to a scene: `scene Other = {};`, or remove it", name.text),
+        );
     }
 }
 

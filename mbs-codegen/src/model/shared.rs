@@ -10,7 +10,7 @@ use crate::syntax::ast::{Name, Statement, StatementKind};
 /// Before: the models of all scenes. After: the fields and functions of all of them, those outside effects first, then
 /// effect after effect, in the order of the text. A name with two different meanings is reported.
 ///
-/// Effects that no scene selects, which is reported, are those of the whole text.
+/// Effects that no declared scene selects are those of the whole text, which is given where there are any, or where a fault is known.
 pub fn merge(
     statements: &[Statement],
     (scenes, whole): (&[Scene], Option<&Scene>),
@@ -25,10 +25,8 @@ pub fn merge(
     // Other fields: the phase of a drive that prescribes a rate, or the name of a faulty statement.
     let others = scenes.iter().flat_map(|scene| &scene.model.fields).map(|field| field.name.text.as_str());
     let of_whole = whole.into_iter().flat_map(|scene| scene.model.fields.iter());
-    let unselected: BTreeMap<&str, &Field> = match diagnostics.is_empty() {
-        true => BTreeMap::new(),
-        false => of_whole.map(|field| (field.name.text.as_str(), field)).collect(),
-    };
+    let unselected: BTreeMap<&str, &Field> =
+        of_whole.map(|field| (field.name.text.as_str(), field)).collect();
     for name in declared(statements).chain(others).filter(|name| done.insert(*name)) {
         let alone = || Some((whole?, *unselected.get(name)?));
         let mut found = scenes.iter().zip(&known).filter_map(|(scene, known)| {
@@ -48,14 +46,15 @@ pub fn merge(
         shared.fields.push(Field { first, ..field.clone() });
         shared.variables.extend(variables.iter().cloned());
     }
-    shared.functions = functions(statements, scenes, &shared.fields, diagnostics);
+    let scenes: Vec<&Scene> = scenes.iter().chain(whole).collect();
+    shared.functions = functions(statements, &scenes, &shared.fields, diagnostics);
     shared
 }
 
 /// The functions of all scenes, of an array the first one; none has the name of a field.
 fn functions(
     statements: &[Statement],
-    scenes: &[Scene],
+    scenes: &[&Scene],
     fields: &[Field],
     diagnostics: &mut Diagnostics,
 ) -> Vec<Function> {

@@ -88,7 +88,12 @@ fn size(whole: &Curve, other: &Curve, times: &[f64], within: f64) -> Result<Size
     let upper = high.iter().zip(&other_high).map(|(a, b)| (a - b).abs());
     let (mut found, mut squares) = (Size { largest: 0.0, at: 0.0, rms: 0.0 }, 0.0);
     for ((difference, other), t) in lower.zip(upper).zip(times) {
+        // The larger of two would hide the one that is no number.
+        let sum = difference + other;
         let difference = difference.max(other) / range;
+        if !sum.is_finite() {
+            return Err(format!("not comparable: the output is no number at t = {t} s"));
+        }
         squares += difference * difference;
         if found.largest < difference {
             (found.largest, found.at) = (difference, *t);

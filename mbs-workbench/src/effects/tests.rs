@@ -102,9 +102,9 @@ fn contributions_are_differences_and_the_scene_to_paste_compiles() {
     );
     let paste = result.to_paste();
     assert_eq!(paste, "scene Enough = strong;");
-    let others = "scene Others = weak + opposed; scene More = strong;";
+    // It alone, in the text as it is.
     let whole = TEXT.replace("effect faulty { coord y: m; }", "");
-    assert!(mbs_codegen::expand_source(&format!("{whole}\n{paste}\n{others}")).is_ok());
+    assert!(mbs_codegen::expand_source(&format!("{whole}\n{paste}")).is_ok());
     assert!(result.page().contains("const DATA = {") && !result.page().contains("{{"));
     assert_eq!(result.csv().lines().count(), 4);
 }
@@ -144,6 +144,12 @@ fn runs_with_errors_of_their_own_are_not_comparable() {
     other.outputs[0].envelope = wider(0.001);
     let size = changes(&whole, &other, &times, 0.01)[0].size.clone().expect("comparable");
     assert!((size.largest - (0.007 + 0.001) / 1.001).abs() < 1e-3, "{size:?}");
+    let mut none = other.clone();
+    (none.outputs[0].envelope, none.outputs[0].values[3]) = (None, f64::NAN);
+    for (a, b) in [(&whole, &none), (&none, &other)] {
+        let reason = changes(a, b, &times, 0.01)[0].size.clone().expect_err("no number");
+        assert!(reason.contains("is no number at t = 0.3 s"), "{reason}");
+    }
     other.outputs.clear();
     assert!(changes(&whole, &other, &times, 0.01)[0].size.is_err());
 }

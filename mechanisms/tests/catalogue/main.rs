@@ -26,6 +26,7 @@ mod geneva;
 mod governor;
 mod heavy_top;
 mod jansen;
+mod kerb;
 mod loop_length;
 mod loop_relative;
 mod n_four_bar;

@@ -67,9 +67,18 @@ fn small_motions_about_a_moment_say_that_it_moves() {
     let text = standard_output(run_into(&scratch, &["modes", "quarter_car"]));
     // Body and wheel on their springs with the other held still are near: 1.1 and 10 Hz.
     assert!(
-        text.contains("1.142825 Hz, damping ratio 0.2781, stable") && text.contains("9.973777 Hz"),
+        text.contains("1.142825 Hz, natural frequency 1.189761 Hz, damping ratio 0.2781, stable")
+            && text.contains("9.973777 Hz"),
         "{text}"
     );
+    // With springs of 20 and 180 kN/m.
+    let stiffer = ["modes", "quarter_car", "--param", "k.0=20000", "--param", "k.1=180000"];
+    let text = standard_output(run_into(&scratch, &stiffer));
+    for (natural, ratio) in [("1.252", "0.2639"), ("11.07", "0.2754")] {
+        let said =
+            |line: &str| line.contains(&format!("natural frequency {natural}")) && line.contains(ratio);
+        assert!(text.lines().any(said), "{text}");
+    }
 }
 
 #[test]

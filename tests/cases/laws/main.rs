@@ -6,6 +6,8 @@ use core::fmt::Debug;
 mod door;
 mod drives;
 mod elements;
+mod half_car;
+mod latched;
 mod plain;
 mod tyre;
 

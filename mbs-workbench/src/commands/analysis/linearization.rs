@@ -73,8 +73,10 @@ fn spelt(mode: &Mode, frozen: bool) -> String {
             let (real, damping) = match course {
                 ModeKind::Marginal => ("0".to_string(), "undamped".to_string()),
                 _ => {
-                    let ratio = -real / real.hypot(imaginary);
-                    (number(real), format!("damping ratio {}", significant(ratio, 4)))
+                    let size = real.hypot(imaginary);
+                    let natural = number(size / TAU);
+                    let ratio = significant(-real / size, 4);
+                    (number(real), format!("natural frequency {natural} Hz, damping ratio {ratio}"))
                 }
             };
             format!("{real} ± {}i 1/s: {hertz} Hz, {damping}, {verdict}", number(imaginary))
