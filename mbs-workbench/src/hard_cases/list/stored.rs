@@ -27,7 +27,7 @@ impl Description {
         Some(own.max(*single) * variation.finer.min(1.0).powi(-4))
     }
 
-    /// `outcome` with the verdict that the known values give.
+    /// `outcome` of a run that answered, with the verdict that the known values give.
     pub fn judged(
         &self,
         outcome: Outcome,
@@ -36,7 +36,11 @@ impl Description {
         (states, oracle): (&[OracleState], &Oracle),
     ) -> Outcome {
         let Some(bound) = self.bound(kind, variation) else { return outcome };
-        if !matches!(outcome.verdict, Verdict::Right | Verdict::Late) {
+        // A run that claims no digits has answered all the same: it is refused only where the list foresees that.
+        let is_doubtful = outcome.verdict == Verdict::Refused;
+        if outcome.verdict == Verdict::Wrong
+            || is_doubtful && self.is_outside(&outcome.method, variation.class)
+        {
             return outcome;
         }
         let worst = match self.worst(states, oracle, variation.class) {
@@ -57,7 +61,7 @@ impl Description {
             return Outcome { verdict: Verdict::Wrong, reason, error, bound, ..outcome };
         }
         // The page shows what is closest to its bound.
-        match own > error / bound {
+        match is_doubtful || own > error / bound {
             true => outcome,
             false => Outcome { error: Some(error), bound: Some(bound), ..outcome },
         }

@@ -119,6 +119,27 @@ fn a_run_beside_a_known_value_is_wrong() {
 }
 
 #[test]
+fn a_run_that_claims_no_digits_is_refused_where_the_list_foresees_it_alone() {
+    let known = "[[known]]\nvalue = 'off'\nsource = 'closed form'";
+    let outside = "[[outside]]\nmethods = ['DormandPrince8']\nwhy = 'd'";
+    let oracle = Oracle::read(SPRING, None, &|_| None).expect("a text");
+    let found = |case: &str, off: f64| {
+        let doubtful = outcome(Verdict::Refused, "no digits are claimed");
+        description(case).judged(doubtful, MethodKind::Adaptive, &variation(1.0), (&states(off), &oracle))
+    };
+    let wrong = found(known, 1e-5);
+    assert!(wrong.verdict == Verdict::Wrong && wrong.reason.contains("closed form"), "{}", wrong.reason);
+    for (case, off) in [(known.to_string(), 9e-7), (format!("{known}\n{outside}"), 1e-5)] {
+        let refused = found(&case, off);
+        assert!(
+            refused.verdict == Verdict::Refused && refused.reason.contains("no digits"),
+            "{}",
+            refused.reason
+        );
+    }
+}
+
+#[test]
 fn a_table_is_known_at_its_times_alone() {
     let tabled = |rows: &str| {
         let mut case = description("[[tables]]\nfile = 'a.csv'\nsize = 2.0\nsource = 'cos t'");
