@@ -125,6 +125,7 @@ pub use model::metric::{Metric, Tolerance};
 pub use model::{Counts, Formulation, MethodWarning, Model, Solved};
 pub use simulation::Simulation;
 pub use simulation::accuracy::{Accurate, ErrorEstimate, Estimated};
+pub use simulation::continued::Continued;
 pub use simulation::reading::Balance;
 pub use simulation::sleep::Simulations;
 pub use time_stepping::moreau_jean::MoreauJean;

@@ -1,5 +1,6 @@
 //! Events, contacts and limits within a step.
 
+mod continued;
 #[path = "../../../mbs-runtime/tests/worst_case/counted.rs"]
 mod counted;
 mod d10_settings;

@@ -115,6 +115,33 @@ pub(crate) fn complete<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
     Ok(())
 }
 
+/// Before: a state of which the coordinates `carried` and their rates come from another motion. After: the rows hold as far as the
+/// other coordinates and their rates can do it, the shortest way in the reference metric.
+///
+/// # Errors
+/// [`NonFinite`](FailureKind::NonFinite), [`SingularMass`](FailureKind::SingularMass).
+pub(crate) fn follow<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut IntegratorState<R, N, S::States>,
+    carried: &[u16],
+    counts: &mut Counts,
+) -> Result<(), Failure> {
+    if carried.len() == N {
+        return Ok(());
+    }
+    let mut closed = *y;
+    if close(model, t, &mut closed, carried, counts).is_ok() {
+        y.q = closed.q;
+    }
+    let position = model.position(t, y);
+    let system = free_columns(model, &position, carried);
+    let factors = system.factorize_rank_revealing(singular::DOUBTFUL.of(), S::COORDINATES, t)?;
+    let rates = model.constraint_rates(&position, &y.qd);
+    y.qd = y.qd.plus(R::constant(-1.0), &[1.0], [&factors.solve(&[R::constant(0.0); N], &rates).0]);
+    Ok(())
+}
+
 /// Position and rates (N each) with the rates without a declaration such that the rows' `rates` (M) vanish.
 ///
 /// If the columns of the others have a singular value σ, rounding leaves ε/σ of the position open, and ε/σ² of the rate along

@@ -130,8 +130,22 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         t: R,
         y: &IntegratorState<R, N, S::States>,
     ) -> Result<(), Failure> {
+        self.require_closed(t, y)?;
         let position = self.position(t, y);
         let one = R::constant(1.0);
+        let allowance = positions::OF_START.of::<R>();
+        let phi_q = self.mechanism.phi_q(self.parameters, &position);
+        let mut allowed = self.mechanism.phi_t(self.parameters, &position);
+        for ((allowed, row), scale) in allowed.iter_mut().zip(&phi_q).zip(&self.metric.rows) {
+            let reach = row.iter().zip(&y.qd).fold(*scale, |sum, (entry, qd)| sum + (*entry * *qd).abs());
+            *allowed = allowance * (reach + allowed.abs());
+        }
+        self.require(t, &self.constraint_rates(&position, &y.qd), &allowed, one, true)
+    }
+
+    /// Fails with the row that the position of a start violates by more than it may.
+    pub(super) fn require_closed(&self, t: R, y: &IntegratorState<R, N, S::States>) -> Result<(), Failure> {
+        let position = self.position(t, y);
         let allowance = positions::OF_START.of::<R>();
         let phi = self.mechanism.phi(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
@@ -140,13 +154,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             let reach = row.iter().zip(&y.q).fold(*allowed, |sum, (entry, q)| sum + (*entry * *q).abs());
             *allowed = allowance * reach;
         }
-        self.require(t, &phi, &allowed, one, false)?;
-        let mut allowed = self.mechanism.phi_t(self.parameters, &position);
-        for ((allowed, row), scale) in allowed.iter_mut().zip(&phi_q).zip(&self.metric.rows) {
-            let reach = row.iter().zip(&y.qd).fold(*scale, |sum, (entry, qd)| sum + (*entry * *qd).abs());
-            *allowed = allowance * (reach + allowed.abs());
-        }
-        self.require(t, &self.constraint_rates(&position, &y.qd), &allowed, one, true)
+        self.require(t, &phi, &allowed, R::constant(1.0), false)
     }
 }
 

@@ -6,6 +6,7 @@ mod accuracy_tests;
 pub(crate) mod adaptive_run;
 pub(crate) mod checks;
 pub(crate) mod contact;
+pub(crate) mod continued;
 pub(crate) mod events;
 pub(crate) mod fixed_run;
 pub(crate) mod fixed_run_events;
@@ -116,6 +117,8 @@ enum Origin {
     Near,
     /// Of the text.
     Text,
+    /// Of another scene, next to values of the text.
+    Carried,
 }
 
 /// Start of a step or of an adaptive run.
@@ -179,7 +182,7 @@ where
         q: impl Into<[R; N]>,
         qd: impl Into<[R; N]>,
     ) -> Result<Self, Failure> {
-        Self::starting(mechanism, method, t, (q.into(), qd.into()), Origin::Consistent)
+        Self::starting(mechanism, method, t, (q.into(), qd.into()), (Origin::Consistent, &[], |_| ()))
     }
 
     /// Starts next to `q` (N) and `qd` (N) at `t` (s). The positions and velocities are those on the constraints that are
@@ -195,7 +198,7 @@ where
         q: impl Into<[R; N]>,
         qd: impl Into<[R; N]>,
     ) -> Result<Self, Failure> {
-        Self::starting(mechanism, method, t, (q.into(), qd.into()), Origin::Near)
+        Self::starting(mechanism, method, t, (q.into(), qd.into()), (Origin::Near, &[], |_| ()))
     }
 
     /// Starts next to the text's guess with the text's start rates at `t` (s). Values that the text declares by `start` stay as
@@ -207,7 +210,7 @@ where
     pub fn start_from_text(mechanism: S, method: X, t: R) -> Result<Self, Failure> {
         let parameters = mechanism.parameters();
         let (q, qd) = (mechanism.guess(&parameters), mechanism.start_rates(&parameters));
-        Self::starting(mechanism, method, t, (q, qd), Origin::Text)
+        Self::starting(mechanism, method, t, (q, qd), (Origin::Text, &[], |_| ()))
     }
 
     fn starting(
@@ -215,7 +218,7 @@ where
         method: X,
         t: R,
         (q, qd): ([R; N], [R; N]),
-        origin: Origin,
+        (origin, carried, set): (Origin, &[u16], impl FnOnce(&mut S::States)),
     ) -> Result<Self, Failure> {
         if let Some(failure) = parameter_failure(&mechanism) {
             return Err(failure);
@@ -226,7 +229,8 @@ where
         let metric = Metric::next_to(&mechanism, &parameters, t, &q);
         let mut model = Model { balanced: true, ..Model::of_states(&mechanism, &parameters, &metric) };
         let mut counts = Counts::default();
-        let states = mechanism.start_states(&parameters);
+        let mut states = mechanism.start_states(&parameters);
+        set(&mut states);
         let mut y = IntegratorState { q, qd, states, work: R::constant(0.0) };
         model.check(t, &y)?;
         match origin {
@@ -235,6 +239,10 @@ where
                 .map_err(|failure| model.contradiction(t, &y, &mut counts).unwrap_or(failure))?,
             Origin::Near => {}
             Origin::Text => consistent_start::complete(&model, t, &mut y, &mut counts)?,
+            Origin::Carried => {
+                consistent_start::follow(&model, t, &mut y, carried, &mut counts)?;
+                model.require_closed(t, &y)?;
+            }
         }
         let declared = IntegratorState { q, qd, ..y };
         let near = y;
@@ -264,6 +272,7 @@ where
             Origin::Consistent => (&[], &[]),
             Origin::Near => (&all, &all),
             Origin::Text => (S::STARTED, S::STARTED_RATES),
+            Origin::Carried => (carried, carried),
         };
         let moved_start = consistent_start::moved(&model, &declared, &y, numbers);
         Ok(Simulation {
