@@ -63,7 +63,9 @@ pub struct Few {
 impl Few {
     /// Extent in words: `2 variants by 3 methods`.
     pub fn words(&self) -> String {
-        format!("{} variants by {} methods", self.seeds.len(), self.methods.len())
+        let counted =
+            |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+        format!("{} by {}", counted(self.seeds.len(), "variant"), counted(self.methods.len(), "method"))
     }
 }
 
