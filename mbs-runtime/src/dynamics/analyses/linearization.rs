@@ -2,7 +2,7 @@
 
 use crate::dynamics::analyses::held_variation::{AlongMotion, FreeMotions};
 use crate::dynamics::analyses::modes::FreeOfHeld;
-use crate::dynamics::analyses::unworked::{Unworked, left};
+use crate::dynamics::analyses::virtual_motions::{VirtualMotions, left};
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::formulations::variation::{FreeMotion, Variation};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -177,12 +177,12 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
     };
     let (mut freedom, mut basis) = (N.saturating_sub(factors.rank()), factors.free_motions());
     let rows = (&tangent.mass, &phi_q, factors.rank());
-    let mut unworked = Unworked::by_multipliers(model, (t, y, lambda), &position, rows)?;
+    let mut directions = VirtualMotions::by_multipliers(model, (t, y, lambda), &position, rows)?;
     if const { !S::SET_VALUED.is_empty() }
         && let Some(rates) = judged
     {
-        let free = FreeOfHeld { model, t, y, rates, basis: (basis, freedom), unworked };
-        ((basis, freedom), unworked) =
+        let free = FreeOfHeld { model, t, y, rates, basis: (basis, freedom), directions };
+        ((basis, freedom), directions) =
             mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, free)?;
     }
     let slow = scaled(&y.qd) <= forces::AT_REST.of();
@@ -194,13 +194,13 @@ pub(crate) fn about_in_modes<S: Dynamic<R, N, M>, R: Real, const N: usize, const
         } else {
             mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, along)
         };
-        let (linear, left, rates) = moving(&tangent, &motions, unworked.as_ref())?;
+        let (linear, left, rates) = moving(&tangent, &motions, directions.as_ref())?;
         return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &left, &rates))));
     }
     let columns = |matrix: &[[R; N]; N]| basis.map(|right| times(matrix, &right));
     let inertia = columns(&tangent.mass);
     let mass = reduced(&basis, &inertia, freedom);
-    let left = left(&tangent.mass, (&basis, freedom), (&inertia, &mass), unworked.as_ref())?;
+    let left = left(&tangent.mass, (&basis, freedom), (&inertia, &mass), directions.as_ref())?;
     let linear = Linearization {
         freedom,
         basis,
@@ -288,7 +288,7 @@ type Moving<R, const N: usize> = (Linearization<R, N>, [[R; N]; N], [[R; N]; N])
 fn moving<R: Real, const N: usize>(
     tangent: &Tangent<R, N>,
     (motions, independent): &FreeMotions<R, N>,
-    unworked: Option<&Unworked<R, N>>,
+    directions: Option<&VirtualMotions<R, N>>,
 ) -> Result<Moving<R, N>, Failure> {
     let (one, none) = (R::constant(1.0), [[R::constant(0.0); N]; N]);
     let (mut basis, mut rates, mut mass, mut damping, mut stiffness) = (none, none, none, none, none);
@@ -308,7 +308,7 @@ fn moving<R: Real, const N: usize>(
         }
     }
     let reduced_mass = reduced(&basis, &mass, freedom);
-    let left = left(&tangent.mass, (&basis, freedom), (&mass, &reduced_mass), unworked)?;
+    let left = left(&tangent.mass, (&basis, freedom), (&mass, &reduced_mass), directions)?;
     let linear = Linearization {
         freedom,
         mass: reduced_mass,

@@ -5,4 +5,4 @@ pub(crate) mod held_variation;
 pub(crate) mod inverse;
 pub(crate) mod linearization;
 mod modes;
-mod unworked;
+mod virtual_motions;

@@ -1,6 +1,6 @@
 //! Modes of frictions that stick, of rigid contacts and of events at one state, for analyses of that state alone.
 
-use crate::dynamics::analyses::unworked::Unworked;
+use crate::dynamics::analyses::virtual_motions::VirtualMotions;
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::equilibrium::modes::Basis;
 use crate::dynamics::formulations::projection::Projection;
@@ -186,7 +186,7 @@ pub(super) struct FreeOfHeld<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, c
     /// Those of the constraints alone.
     pub basis: Columns<R, N>,
     /// Without work of multipliers, where these are others.
-    pub unworked: Option<Unworked<R, N>>,
+    pub directions: Option<VirtualMotions<R, N>>,
 }
 
 /// Motions column by column, orthonormal in the metric, and how many of them count.
@@ -194,7 +194,7 @@ type Columns<R, const N: usize> = ([[R; N]; N], usize);
 
 /// Motions free of rows that hold, and those without work of forces that vary, where these are others: a friction that slides on a contact
 /// works with that contact's force.
-pub(super) type Free<R, const N: usize> = (Columns<R, N>, Option<Unworked<R, N>>);
+pub(super) type Free<R, const N: usize> = (Columns<R, N>, Option<VirtualMotions<R, N>>);
 
 impl<S, R, const N: usize, const M: usize> WithSetValuedRows<R, N> for FreeOfHeld<'_, S, R, N, M>
 where
@@ -209,19 +209,19 @@ where
         let free = self.without::<K>(&self.basis, modes, |index| rows.get(index).map(|row| row.gradient));
         let mut each = rows.iter().zip(modes);
         let slides = each.position(|(row, mode)| row.on.is_some() && !sticks(mode) && !is_off(row, modes));
-        let singular = match (slides, self.unworked) {
+        let singular = match (slides, self.directions) {
             (None, None) => return Ok((free, None)),
-            (None, Some(unworked)) => unworked.singular,
+            (None, Some(directions)) => directions.singular,
             (Some(row), _) => {
                 let row = checks::entry(S::SET_VALUED, u16::try_from(row).unwrap_or(u16::MAX));
                 FailureKind::SetValuedForce { row }.at(self.t.to_f64())
             }
         };
-        let base = (self.unworked.map_or(self.basis.0, |unworked| unworked.motions), self.basis.1);
-        let unworked =
+        let base = (self.directions.map_or(self.basis.0, |directions| directions.motions), self.basis.1);
+        let directions =
             self.without::<K>(&base, modes, |index| Some(column::<S, R, N, M, K>(rows, modes, index)));
-        if unworked.1 == free.1 {
-            Ok((free, Some(Unworked { motions: unworked.0, singular })))
+        if directions.1 == free.1 {
+            Ok((free, Some(VirtualMotions { motions: directions.0, singular })))
         } else {
             Err(singular)
         }

@@ -30,7 +30,7 @@ where
     R: Real,
 {
     /// The motion from here on in another scene: `mechanism`, as `scene()` of this one gives it. The time, coordinates with their rates and
-    /// first-order states come over, by their names, and the tolerances of steps and positions.
+    /// first-order states come over, by their names and units, and the tolerances of steps and positions.
     ///
     /// Coordinates that are new meet the rows, the shortest way from the guess of the text. Rates that new rows contradict change as in an
     /// inelastic impact: by impulses of these rows alone, so that a momentum that they do not touch stays.
@@ -68,7 +68,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// [`OffConstraints`](crate::FailureKind::OffConstraints) where the new coordinates cannot meet the rows, and otherwise those of
+    /// [`OffConstraints`](crate::FailureKind::OffConstraints) where new coordinates cannot meet the rows of the positions that came over, and otherwise those of
     /// [`start`](Self::start).
     pub fn continue_as<B, Y, const K: usize, const L: usize>(
         &self,

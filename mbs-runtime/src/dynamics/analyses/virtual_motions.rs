@@ -1,4 +1,4 @@
-//! Motions along which no force works that varies with the motion: neither multipliers, with frictions that slide by them, nor rows that
+//! Virtual motions, along which no force works that varies with the motion: neither multipliers, with frictions that slide by them, nor rows that
 //! hold. They are the left vectors of small motions.
 
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -13,16 +13,16 @@ use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::{set_valued, singular};
 
-/// Motions without work where they are others than those that rows leave free: as many.
+/// Virtual motions without work of forces that vary, where they are others than those that rows leave free: as many.
 #[derive(Clone, Copy)]
-pub(super) struct Unworked<R, const N: usize> {
+pub(super) struct VirtualMotions<R, const N: usize> {
     /// Column by column, orthonormal in the metric.
     pub motions: [[R; N]; N],
     /// The failure where accelerations do not follow in them.
     pub singular: Failure,
 }
 
-impl<R: Real, const N: usize> Unworked<R, N> {
+impl<R: Real, const N: usize> VirtualMotions<R, N> {
     /// Those of the constraints alone: along them δλ has no work, (Φ_q − Q_λᵀ) L = 0. `None` where forces do not depend on λ there.
     ///
     /// # Errors
@@ -52,33 +52,33 @@ impl<R: Real, const N: usize> Unworked<R, N> {
         if factors.rank() != rank {
             return Err(singular);
         }
-        Ok(Some(Unworked { motions: factors.free_motions(), singular }))
+        Ok(Some(VirtualMotions { motions: factors.free_motions(), singular }))
     }
 }
 
-/// Left vectors of `freedom` motions `basis`, R: itself, or combinations of motions `unworked` whose products with M R, `inertia`, are
+/// Left vectors of `freedom` motions `basis`, R: itself, or combinations of motions `directions` whose products with M R, `inertia`, are
 /// those of R. So the equation keeps the mass `reduced_mass`.
 ///
 /// # Errors
-/// That of `unworked` where no combination has these products.
+/// That of `directions` where no combination has these products.
 pub(super) fn left<R: Real, const N: usize>(
     mass: &[[R; N]; N],
     (basis, freedom): (&[[R; N]; N], usize),
     (inertia, reduced_mass): (&[[R; N]; N], &[[R; N]; N]),
-    unworked: Option<&Unworked<R, N>>,
+    directions: Option<&VirtualMotions<R, N>>,
 ) -> Result<[[R; N]; N], Failure> {
-    let Some(Unworked { motions: unworked, singular }) = unworked else { return Ok(*basis) };
+    let Some(VirtualMotions { motions: directions, singular }) = directions else { return Ok(*basis) };
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
     let mut products = identity::<R, N>();
     let (mut sizes, mut scales) = ([one; N], [one; N]);
     let lines = products.iter_mut().zip(inertia).zip(reduced_mass).zip(&mut sizes).enumerate().take(freedom);
     for (index, (((line, inertia), mass), size)) in lines {
         *size = at(mass, index).sqrt();
-        for (entry, motion) in line.iter_mut().zip(unworked).take(freedom) {
+        for (entry, motion) in line.iter_mut().zip(directions).take(freedom) {
             *entry = dot(motion, inertia);
         }
     }
-    for (scale, motion) in scales.iter_mut().zip(unworked).take(freedom) {
+    for (scale, motion) in scales.iter_mut().zip(directions).take(freedom) {
         *scale = one / dot(motion, &times(mass, motion)).sqrt();
     }
     let (factors, margin) = Lu::factorize(&products, &sizes, &scales);
@@ -87,7 +87,7 @@ pub(super) fn left<R: Real, const N: usize>(
     }
     let mut left = [[zero; N]; N];
     for (left, mass) in left.iter_mut().zip(reduced_mass).take(freedom) {
-        for (share, motion) in factors.solve(mass).iter().zip(unworked).take(freedom) {
+        for (share, motion) in factors.solve(mass).iter().zip(directions).take(freedom) {
             *left = left.plus(*share, &[1.0], [motion]);
         }
     }
