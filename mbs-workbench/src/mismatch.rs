@@ -99,7 +99,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     /// Below this Jaro-Winkler similarity a proposal confuses more than it helps.
     const NEAR: f64 = 0.75;
     // `FOUR_BAR` and `four-bar` are `four_bar`.
-    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let plain = |text: &str| listed(text).to_lowercase().replace(['-', ' '], "_");
     let name = plain(name);
     let rated = known.into_iter().map(|known| (strsim::jaro_winkler(&name, &plain(known)), known));
     rated.filter(|(nearness, _)| *nearness > NEAR).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, known)| known)
@@ -114,6 +114,11 @@ fn write_known<S: AsRef<str>>(f: &mut fmt::Formatter<'_>, name: &str, known: &[S
         write!(f, "; did you mean `{nearest}`?")?;
     }
     write!(f, "\nknown: {}", wrapped(&known))
+}
+
+/// A component as lists name it, `B.1.0`, from one that is written as in a text, `B[1][0]` or `B[1, 0]`.
+pub fn listed(name: &str) -> String {
+    name.replace("][", ".").replace(", ", ".").replace(['[', ','], ".").replace(']', "")
 }
 
 /// The components of the array called `name`: `m.0` … `m.6`; `None` where it is no array.

@@ -1,5 +1,6 @@
 //! `NAME=VALUE` of the command line: a number in the unit of the text, or with a unit of its own.
 
+use crate::mismatch::listed;
 use mbs_codegen::{Quantity, quantity};
 
 use super::{CommandError, summary};
@@ -36,7 +37,7 @@ impl Assignment {
     }
 }
 
-/// Reads `omega=20`, `L1=200mm`, `A=4 [m^2]`.
+/// Reads `omega=20`, `L1=200mm`, `A=4 [m^2]`, `k[0]=2`.
 pub fn assignment(text: &str) -> Result<Assignment, String> {
     let (name, value) = text.split_once('=').ok_or("write it as NAME=VALUE, for example omega=20")?;
     let (name, written) = (name.trim(), value.trim());
@@ -49,7 +50,7 @@ pub fn assignment(text: &str) -> Result<Assignment, String> {
     }
     let quantity = quantity(written)
         .map_err(|(message, help)| format!("`{written}` is not a number: {message}; {help}"))?;
-    Ok(Assignment { name: name.to_string(), quantity, written: written.to_string() })
+    Ok(Assignment { name: listed(name), quantity, written: written.to_string() })
 }
 
 /// The number as messages quote it: `0.2 m`.
@@ -80,6 +81,13 @@ mod tests {
         ] {
             let found = value(text, unit).expect(text);
             assert!((found - expected).abs() <= 1e-15 * expected.abs(), "{text}: {found}");
+        }
+    }
+
+    #[test]
+    fn components_are_named_as_in_lists_or_in_texts() {
+        for text in ["B.1.0=2", "B[1][0]=2", "B[1, 0]=2", "B[1,0]=2", "B[1].0=2"] {
+            assert_eq!(assignment(text).expect(text).name, "B.1.0", "{text}");
         }
     }
 

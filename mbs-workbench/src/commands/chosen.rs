@@ -1,5 +1,6 @@
 //! Arguments that the teaching commands share: mechanism, parameters, time and output file.
 
+use std::convert::Infallible;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ use crate::erased::dynamics::direct_dynamics::moved_to;
 use crate::erased::erase::Erased;
 use crate::erased::experiment::state_at;
 use crate::erased::facade::{AnyEquations, AnyMechanism, State};
-use crate::mismatch::{Mismatch, array, nearest, wrapped};
+use crate::mismatch::{Mismatch, array, listed, nearest, wrapped};
 use clap::Args;
 use mbs_codegen::StructureReport;
 
@@ -130,7 +131,7 @@ impl Choice {
 
 /// Index of the coordinate called `name` of the mechanism that was asked for as `card`.
 pub fn coordinate(mechanism: &dyn AnyEquations, card: &str, name: &str) -> Result<usize, CommandError> {
-    let coordinates = mechanism.coordinates();
+    let (name, coordinates) = (&listed(name), mechanism.coordinates());
     coordinates.iter().position(|entry| entry.name == name).ok_or_else(|| {
         let known: Vec<&str> = coordinates.iter().map(|entry| entry.name).collect();
         if let Some(array) = array(name, &known) {
@@ -143,6 +144,11 @@ pub fn coordinate(mechanism: &dyn AnyEquations, card: &str, name: &str) -> Resul
         let list = wrapped(&known);
         CommandError::Usage(format!("`{card}` has no coordinate `{name}`{near}\nknown: {list}"))
     })
+}
+
+/// A component of an array as lists name it, or as a text does.
+pub fn component(text: &str) -> Result<String, Infallible> {
+    Ok(listed(text.trim()))
 }
 
 /// A finite number.

@@ -8,7 +8,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::assignment::{Assignment, assignment};
-use super::chosen::finite;
+use super::chosen::{component, finite};
 use super::cost_extras::{ask_peers, valleys};
 use super::document::Output;
 use super::of_file::{first_that_compiles, studies_of_card};
@@ -51,7 +51,7 @@ pub struct Arguments {
     #[arg(long, value_name = "E", default_value = "1e-6", value_parser = above_zero, allow_negative_numbers = true)]
     error: f64,
     /// Judge these outputs in place of the coordinates
-    #[arg(long, value_name = "OUT", value_delimiter = ',')]
+    #[arg(long, value_name = "OUT", value_delimiter = ',', value_parser = component)]
     watch: Vec<String>,
     /// Methods to compare, by parts of their names: `projection`, `dormandprince8`, `radau5` [default: all]
     #[arg(long, value_name = "METHOD", value_delimiter = ',')]

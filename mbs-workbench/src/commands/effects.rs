@@ -12,6 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mbs_codegen::picture::{Picture, Span, picture};
 
 use super::assignment::{Assignment, assignment, with_unit};
+use super::chosen::component;
 use super::cost::{above_zero, machine};
 use super::document::{Output, WHOLE};
 use super::report_files::{require_writable, write_report};
@@ -35,7 +36,7 @@ pub struct Arguments {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     pub name: String,
     /// Outputs that are compared [default: all]
-    #[arg(long, value_name = "OUT", value_delimiter = ',')]
+    #[arg(long, value_name = "OUT", value_delimiter = ',', value_parser = component)]
     watch: Vec<String>,
     /// Largest change of a watched output, over its range in the motion: `1%` or `0.01`
     #[arg(long, value_name = "PART", default_value = "1%", value_parser = part, allow_negative_numbers = true)]

@@ -6,7 +6,7 @@ use super::CommandError;
 use super::analysis::{Request, RunResult};
 use super::target::Target;
 use crate::erased::erase::Erased;
-use crate::mismatch::{array, nearest, wrapped};
+use crate::mismatch::{array, listed, nearest, wrapped};
 use crate::motion::rounded;
 
 /// Stops of a slider where the command line names no number.
@@ -31,7 +31,7 @@ pub fn slide(text: &str) -> Result<Slide, String> {
         Some((name, count)) => (name, Some(count.trim())),
         None => (text, None),
     };
-    let name = name.trim().to_string();
+    let name = listed(name.trim());
     if name.is_empty() {
         return Err("the name of a parameter is needed, for example L1".to_string());
     }
