@@ -9,7 +9,8 @@ use crate::{browser, costs, documents, fuzz, growth, lines, planted};
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 12] = [
+const LONG: [(&str, &str); 13] = [
+    ("mbs-book", "pictures"),
     ("mbs-codegen", ""),
     ("mbs-motions", ""),
     ("mbs-cases", "events"),
@@ -42,7 +43,7 @@ pub fn ci() -> Result<(), String> {
             "--workspace",
             "--all-targets",
             "--features",
-            "mbs-cases/long,mbs-codegen/long,mbs-faults/long,mbs-motions/long,mbs-tests/long,mechanisms/long",
+            "mbs-book/long,mbs-cases/long,mbs-codegen/long,mbs-faults/long,mbs-motions/long,mbs-tests/long,mechanisms/long",
             "--",
             "-D",
             "warnings",

@@ -7,27 +7,55 @@ use crate::output::page::escaped;
 
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 30.0;
-const BOTTOM: f64 = 44.0;
 /// Height of a row of the legend.
 const ROW: f64 = 18.0;
 /// Width of a letter of 12 units.
 const LETTER: f64 = 6.6;
 
-/// A drawing for one width of the reader's screen. The page shows one of both.
+/// A drawing for one width of the reader's screen, of which the page shows one, or for a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Frame {
-    /// Class in the page's style.
-    class: &'static str,
+    /// Class in the page's style; a file brings its own.
+    class: Option<&'static str>,
     width: f64,
     height: f64,
     /// Room for the numbers of the axis.
     left: f64,
+    /// Room below the axis; in a file the name of the axis stands there too.
+    below: f64,
     /// Angle between two lines of the grid (deg).
     step: f64,
 }
 
-const WIDE: Frame = Frame { class: "wide", width: 680.0, height: 330.0, left: 74.0, step: 45.0 };
-const NARROW: Frame = Frame { class: "narrow", width: 350.0, height: 250.0, left: 52.0, step: 90.0 };
+const WIDE: Frame =
+    Frame { class: Some("wide"), width: 680.0, height: 330.0, left: 74.0, below: 44.0, step: 45.0 };
+const NARROW: Frame =
+    Frame { class: Some("narrow"), width: 350.0, height: 250.0, left: 52.0, below: 44.0, step: 90.0 };
+const FILE: Frame = Frame { class: None, width: 640.0, height: 330.0, left: 62.0, below: 64.0, step: 45.0 };
+
+/// Style of a file: the page's colours of light themes, on white ground.
+const STYLE: &str = "text { fill: #3d4656; font: 12px sans-serif } .grid { stroke: #dde1e7; fill: none } \
+    .curve { fill: none; stroke-width: 1.6; stroke-linejoin: round } .dashed { stroke-dasharray: 5 4 } \
+    .line0 { stroke: #0072b2 } .line1 { stroke: #d55e00 } .line2 { stroke: #009e73 } .line3 { stroke: #b3669a } \
+    .line4 { stroke: #b58900 } .line5 { stroke: #66707f } .band { fill: #0072b2; fill-opacity: .22 } \
+    .mark { fill: #d55e00; fill-opacity: .18 }";
+
+impl Frame {
+    /// First lines of a drawing of `height`.
+    fn opened(self, height: f64, caption: &str) -> String {
+        let (width, caption) = (self.width, escaped(caption));
+        match self.class {
+            Some(class) => format!(
+                "<svg class=\"{class}\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{caption}\">\n"
+            ),
+            None => format!(
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+                 height=\"{height}\" role=\"img\" aria-label=\"{caption}\">\n<style>{STYLE}</style>\n\
+                 <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+            ),
+        }
+    }
+}
 
 /// The drawing for both widths.
 fn for_both(drawn: impl Fn(Frame) -> String) -> String {
@@ -100,17 +128,14 @@ impl Timeline {
 
     fn drawn(&self, frame: Frame) -> String {
         const ROW: f64 = 30.0;
-        let Frame { class, width, .. } = frame;
+        let Frame { width, .. } = frame;
         let longest = self.rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
         let names = 14.0 + LETTER * longest as f64;
         let [low, high] = self.ends;
         let x = |value: f64| names + (value - low) / (high - low) * (width - names - RIGHT);
         let height = ROW * self.rows.len() as f64 + 40.0;
         let bottom = height - 24.0;
-        let mut svg = format!(
-            "<svg class=\"{class}\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\">\n",
-            escaped(&self.caption)
-        );
+        let mut svg = frame.opened(height, &self.caption);
         for value in parts_of_a_turn([low, high], frame) {
             let at = x(value);
             let _ = writeln!(
@@ -211,6 +236,11 @@ impl Plot {
         Picture { caption: self.caption.clone(), svg: for_both(|frame| self.drawn(frame)) }
     }
 
+    /// The plot as a file of its own, on white ground.
+    pub fn file(&self) -> String {
+        self.drawn(FILE)
+    }
+
     /// A place on the paper before it is scaled.
     fn scale(&self, value: f64) -> f64 {
         if self.is_logarithmic { value.log10() } else { value }
@@ -225,10 +255,10 @@ impl Plot {
     }
 
     fn drawn(&self, frame: Frame) -> String {
-        let Frame { class, width, left: margin, .. } = frame;
+        let Frame { width, left: margin, .. } = frame;
         let (keys, rows) = self.keys(frame);
         let height = frame.height + ROW * (rows - 1) as f64;
-        let bottom = frame.height - BOTTOM;
+        let bottom = frame.height - frame.below;
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
         let areas = || self.bands.iter().flat_map(|(_, points)| points);
         let scale = |value| self.scale(value);
@@ -245,10 +275,7 @@ impl Plot {
             let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
             bottom - share * (bottom - TOP)
         };
-        let mut svg = format!(
-            "<svg class=\"{class}\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\">\n",
-            escaped(&self.caption)
-        );
+        let mut svg = frame.opened(height, &self.caption);
         for (value, name) in self.round(low, high) {
             let at = y(value);
             let _ = writeln!(
@@ -301,11 +328,11 @@ impl Plot {
             let _ = writeln!(svg, "<path class=\"curve line{}{dashes}\" d=\"{line}\"/>", index % 6);
         }
         svg += &keys;
+        let above = if frame.class.is_some() { 14.0 } else { bottom + 35.0 };
         let _ = writeln!(
             svg,
-            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text><text x=\"4\" y=\"14\">{}</text></svg>",
+            "<text x=\"{:.1}\" y=\"{above:.1}\" text-anchor=\"end\">{}</text><text x=\"4\" y=\"14\">{}</text></svg>",
             width - RIGHT,
-            14.0,
             escaped(&self.x),
             escaped(&self.y)
         );
@@ -392,6 +419,24 @@ mod tests {
         // A plot without a point has axes.
         assert!(!Plot::default().picture().svg.contains("inf"));
     }
+
+    #[test]
+    fn a_file_brings_its_ground_and_colours_and_names_its_axis_below() {
+        let curves = vec![Curve::new("a", &[0.0, 1.0], &[0.0, 2.0])];
+        let plot = Plot { x: "time (s)".to_string(), curves, ..Plot::default() };
+        let svg = plot.file();
+        for part in [
+            "xmlns=",
+            "height=\"330\"",
+            "fill=\"white\"",
+            ".line0 { stroke",
+            "y=\"301.0\" text-anchor=\"end\">time",
+        ] {
+            assert!(svg.contains(part), "{part}: {svg}");
+        }
+        assert!(!plot.picture().svg.contains("<style>"));
+    }
+
     #[test]
     fn logarithmic_axes_name_the_numbers_and_legends_wrap() {
         let names =
