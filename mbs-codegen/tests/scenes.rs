@@ -1,6 +1,9 @@
 //! A scene without an effect is the text that never mentioned it: the same operations in the same order.
 #![forbid(unsafe_code)]
 
+#[path = "scenes/release.rs"]
+mod release;
+
 use std::collections::BTreeMap;
 
 use quote::ToTokens;

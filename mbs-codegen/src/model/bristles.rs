@@ -60,6 +60,10 @@ impl Resolver<'_> {
             }
         };
         let span = name.span;
+        // The surfaces do not touch, so no bristle bends.
+        if self.model.expressions.is_absent(normal) {
+            return Ok(Some(Bristles { force: normal, deflection: normal }));
+        }
         let index = self.dynamics().states.len();
         let [force, deflection, growth] = self.elaborate(Reach::Force, |work| {
             let deflection = work.expressions.push(Node::State(index));

@@ -17,7 +17,16 @@ use crate::syntax::ast::{Equation, Expression, Instruction, Item, Name, Operatio
 impl Resolver<'_> {
     /// Rows of a constraint, its loops unrolled.
     pub(super) fn constraint(&mut self, name: &Name, items: &[Item]) -> Result<(), Fault> {
-        let group = self.group(name, "constraint")?;
+        self.constraint_rows((name, "constraint"), items)
+    }
+
+    /// Rows of a group of this kind.
+    pub(super) fn constraint_rows(
+        &mut self,
+        (name, kind): (&Name, &'static str),
+        items: &[Item],
+    ) -> Result<(), Fault> {
+        let group = self.group(name, kind)?;
         let outer = self.loops.len();
         let mut next = 0;
         while let Some(item) = items.get(next) {

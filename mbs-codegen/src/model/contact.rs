@@ -49,6 +49,10 @@ impl Resolver<'_> {
             }
         };
         let damping = self.damping(name, given)?;
+        if self.model.expressions.is_absent(stiffness) {
+            self.names.seen.define(&name.text, Seen::Contact { gap, force: stiffness, rigid: None });
+            return Ok(());
+        }
         let force =
             self.elaborate(Reach::Force, |work| pressing(work, gap, stiffness, (power, damping), name.span))?;
         let (bound, span) = (given.scalar("bound"), name.span);

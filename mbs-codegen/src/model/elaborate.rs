@@ -42,7 +42,8 @@ impl Elaborator<'_> {
         let mut next = 0;
         let result = loop {
             let Some(instruction) = expression.code.get(next) else { break stack.pop(self.names) };
-            if self.expressions.operations() > MOST_OPERATIONS || self.expressions.len() > MOST_EXPRESSIONS {
+            if self.expressions.operations() > MOST_OPERATIONS || self.expressions.spent() > MOST_EXPRESSIONS
+            {
                 break Err(self.fault(
                     instruction.span,
                     format!("the text unrolls to more than {MOST_OPERATIONS} operations"),

@@ -121,16 +121,53 @@ impl Elaborator<'_> {
     /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.
     pub fn push_unary(&mut self, function: Unary, a: Id, span: Span) -> Result<Id, Fault> {
         match self.expressions.node(a) {
-            Node::Number(a) => self.folded((function.entry().value)(a), span),
+            Node::Number(number) => {
+                let value = (function.entry().value)(number);
+                if value == 0.0 && self.expressions.is_absent(a) {
+                    return Ok(a);
+                }
+                self.folded(value, span)
+            }
             _ => Ok(self.expressions.push(Node::Unary(function, a))),
         }
     }
 
     /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.
     pub fn push_binary(&mut self, function: Binary, a: Id, b: Id, span: Span) -> Result<Id, Fault> {
+        if self.expressions.is_absent(a) || self.expressions.is_absent(b) {
+            return self.push_beside_absent(function, [a, b], span);
+        }
         match (self.expressions.node(a), self.expressions.node(b)) {
             (Node::Number(a), Node::Number(b)) => self.folded((function.entry().value)(a, b), span),
             _ => Ok(self.expressions.push(Node::Binary(function, a, b))),
+        }
+    }
+
+    /// A function of the force of a row that is not there: products with it are 0, whatever the other factor is.
+    fn push_beside_absent(&mut self, function: Binary, [a, b]: [Id; 2], span: Span) -> Result<Id, Fault> {
+        let [is_a, is_b] = [a, b].map(|id| self.expressions.is_absent(id));
+        match (function, is_a, is_b) {
+            (Binary::Divide, _, true) => Err(self.fault(
+                span,
+                "this divides by the force of a row that an effect of the scene releases, which is 0",
+                "leave it to scenes that have the row, or keep the divisor from 0: `max(…, 1N)`",
+            )),
+            (Binary::Multiply, true, _) | (Binary::Divide, true, _) => Ok(a),
+            (Binary::Multiply, _, true) => Ok(b),
+            (Binary::Add, true, _) => Ok(b),
+            (Binary::Add | Binary::Subtract, _, true) => Ok(a),
+            (Binary::Subtract, true, _) => self.push_unary(Unary::Negate, b, span),
+            _ => match (self.expressions.node(a), self.expressions.node(b)) {
+                (Node::Number(x), Node::Number(y)) => {
+                    let value = (function.entry().value)(x, y);
+                    match value == 0.0 {
+                        true if is_a => Ok(a),
+                        true => Ok(b),
+                        false => self.folded(value, span),
+                    }
+                }
+                _ => Ok(self.expressions.push(Node::Binary(function, a, b))),
+            },
         }
     }
 

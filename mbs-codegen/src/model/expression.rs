@@ -70,11 +70,23 @@ pub struct Call {
     pub span: Span,
 }
 
+/// An end of the arena.
+#[derive(Clone, Copy, Debug)]
+pub struct Mark {
+    nodes: usize,
+    calls: usize,
+    lengths: usize,
+}
+
 /// The arena.
 #[derive(Clone, Debug, Default)]
 pub struct Expressions {
     nodes: Vec<Node>,
     operations: usize,
+    /// Expressions that were taken back.
+    spent: usize,
+    /// Forces of rows that are not there, and what is 0 with them.
+    absent: BTreeSet<Id>,
     /// Expressions that partial derivatives went through.
     visited: usize,
     calls: Vec<Call>,
@@ -99,6 +111,35 @@ impl Expressions {
         let id = self.push(Node::Call { function, order, argument });
         self.calls.push(Call { id, span });
         id
+    }
+
+    /// The end of the arena so far.
+    pub fn mark(&self) -> Mark {
+        Mark { nodes: self.nodes.len(), calls: self.calls.len(), lengths: self.lengths.len() }
+    }
+
+    /// Takes back what was added since `mark`, which nothing else uses. It counts as spent nevertheless.
+    pub fn restore(&mut self, mark: Mark) {
+        self.spent = self.spent.saturating_add(self.nodes.len().saturating_sub(mark.nodes));
+        self.nodes.truncate(mark.nodes);
+        self.calls.truncate(mark.calls);
+        self.lengths.truncate(mark.lengths);
+        let end = Id(mark.nodes as u32);
+        self.measures.split_off(&end);
+        self.rates_of_length.split_off(&end);
+        self.absent.split_off(&end);
+    }
+
+    /// Adds the force of a row that is not there.
+    pub fn push_absent(&mut self) -> Id {
+        let id = self.push(Node::Number(0.0));
+        self.absent.insert(id);
+        id
+    }
+
+    /// `true` if it is 0 because a row is not there.
+    pub fn is_absent(&self, id: Id) -> bool {
+        self.absent.contains(&id)
     }
 
     /// Counts `more` expressions that a partial derivative goes through; `false` where all of them are more than `most`.
@@ -186,6 +227,11 @@ impl Expressions {
     /// The expression.
     pub fn node(&self, id: Id) -> Node {
         self.nodes.get(id.0 as usize).copied().unwrap_or(Node::Number(f64::NAN))
+    }
+
+    /// Number of expressions, those that were taken back included.
+    pub fn spent(&self) -> usize {
+        self.nodes.len().saturating_add(self.spent)
     }
 
     /// Number of expressions.

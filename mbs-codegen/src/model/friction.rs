@@ -21,8 +21,20 @@ impl Resolver<'_> {
         let (along, normal) = (field("along")?, field("normal")?);
         let coefficient = field("coefficient")?;
         let span = name.span;
+        let is_absent = self.model.expressions.is_absent(normal);
         let bristles = self.bristles(name, &full, given, [along, normal, coefficient])?;
-        let [force, sliding] = if let Some(bristles) = bristles {
+        let [force, sliding] = if is_absent {
+            // What stays is viscous.
+            let force = match given.scalar("viscous") {
+                None => normal,
+                Some(_) => self.elaborate(Reach::Force, |work| {
+                    let rate = work.expressions.push(Node::Rate(along, 1));
+                    let force = with_drag(work, normal, rate, given, name)?;
+                    work.push_unary(Unary::Negate, force, span)
+                })?,
+            };
+            [force; 2]
+        } else if let Some(bristles) = bristles {
             [bristles.force; 2]
         } else if let Some(most) = given.scalar("sticks") {
             let index = self.dynamics().set_valued.len();

@@ -65,6 +65,8 @@ impl Resolver<'_> {
     pub(super) fn element(&mut self, kind: Element, name: &Name, fields: &[Field]) -> Result<(), Fault> {
         let group = if kind == Element::Body { "body" } else { "force" };
         let full = self.numbered(name, group)?;
+        let before =
+            self.model.dynamics.as_ref().map_or((0, 0), |known| (known.signed.len(), known.forces.len()));
         let given =
             self.fields(kind, name, fields).inspect_err(|_| self.names.mark_faulty_element(&name.text))?;
         let read = match kind {
@@ -75,6 +77,10 @@ impl Resolver<'_> {
             Element::Contact => self.contact(name, full, &given),
             Element::Rsda => self.turn(name, full, &given),
         };
+        // Nothing is left of a friction whose normal force is that of a row which is not there.
+        if kind == Element::Friction && read.is_ok() && self.dynamics().forces.len() == before.1 {
+            self.dynamics().signed.truncate(before.0);
+        }
         // Uses of its force are no faults of their own.
         read.inspect_err(|_| self.names.mark_faulty_element(&name.text))
     }
@@ -397,7 +403,9 @@ impl Resolver<'_> {
     }
 
     fn force_on(&mut self, name: &Name, full: String, action: Action, carriers: [Option<Carrier>; 2]) {
-        self.dynamics().forces.push(Force { name: full, action, carriers, span: name.span });
+        if let Some(action) = self.present(action) {
+            self.dynamics().forces.push(Force { name: full, action, carriers, span: name.span });
+        }
     }
 
     /// The name of a statement, with its round in a loop.

@@ -46,6 +46,7 @@ pub mod rates;
 mod reference_checks;
 pub mod reference_length;
 pub mod references;
+mod release;
 pub mod repeated;
 pub mod resolve;
 mod resolver;

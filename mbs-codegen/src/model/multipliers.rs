@@ -87,7 +87,10 @@ impl Elaborator<'_> {
         let mut items = Vec::new();
         for (row, dimension) in &chosen {
             let quantity = Quantity::Known(Dimension::JOULE.over(*dimension));
-            let id = self.expressions.push(Node::Multiplier(*row));
+            let id = match rows.released {
+                true => self.expressions.push_absent(),
+                false => self.expressions.push(Node::Multiplier(*row)),
+            };
             let scalar = Scalar { id, quantity, bare: Bare::Not, span };
             items.push(match function {
                 "effort" => self.unary_scalar(Unary::Negate, scalar, quantity, span)?,

@@ -129,6 +129,8 @@ pub struct Rows {
     pub rows: Vec<(usize, Dimension)>,
     /// `true` if a `drive` declares them.
     pub driven: bool,
+    /// `true` if an effect of the scene releases them: none is there, and their indices mean nothing.
+    pub released: bool,
 }
 
 /// A pin by its index, and the names of its bodies.

@@ -42,6 +42,11 @@ impl Elaborator<'_> {
         if self.names.has_faulty_rows(name) {
             return Err(Fault);
         }
+        if self.names.rows(name).is_some_and(|rows| rows.released) {
+            let message = format!("an effect of the scene releases `{name}`, which has no `{function}` then");
+            let help = "write the output in an effect, and leave that out of scenes without the constraint";
+            return Err(self.fault(*place, message, help));
+        }
         if self.reach != Reach::Output {
             return Err(self.fault(
                 span,

@@ -44,6 +44,7 @@ pub fn resolve(
         groups: Vec::new(),
         loops: Vec::new(),
         rounds: 0,
+        released_rows: 0,
         pass: Pass::Rows,
     };
     // A mass that could not be read is one.
@@ -102,7 +103,8 @@ impl Resolver<'_> {
 
     /// `true` if loops unroll to more rows, outputs or rounds than allowed; reported once.
     pub(super) fn too_large(&mut self) -> bool {
-        let large = self.model.rows.len() > MOST_ROWS || self.model.outputs.len() > MOST_OUTPUTS;
+        let rows = self.model.rows.len().saturating_add(self.released_rows);
+        let large = rows > MOST_ROWS || self.model.outputs.len() > MOST_OUTPUTS;
         if large {
             let span = self.groups.last().map_or_else(Span::call_site, |group| group.name.span);
             let message = format!("the text unrolls to more than {MOST_ROWS} rows or {MOST_OUTPUTS} outputs");
@@ -125,7 +127,8 @@ impl Resolver<'_> {
 
     fn row_statement(&mut self, kind: &StatementKind) -> Result<(), Fault> {
         match kind {
-            StatementKind::Constraint { name, redundant, within, items } => {
+            StatementKind::Constraint { name, items, released: true, .. } => self.released(name, items),
+            StatementKind::Constraint { name, redundant, within, items, .. } => {
                 let first = self.model.rows.len();
                 self.constraint(name, items)?;
                 self.model.rows.iter_mut().skip(first).for_each(|row| row.redundant = redundant.is_some());
@@ -291,7 +294,8 @@ impl Resolver<'_> {
         for group in self.groups.iter().filter(|group| matches!(group.kind, "constraint" | "drive")) {
             let dimension = |row: &usize| self.model.rows.get(*row).map(|found| (*row, found.dimension));
             let rows = group.rows.iter().filter_map(dimension).collect();
-            self.names.define_rows(&group.name.text, Rows { rows, driven: group.kind == "drive" });
+            self.names
+                .define_rows(&group.name.text, Rows { rows, driven: group.kind == "drive", released: false });
             for (number, row) in group.rows.iter().enumerate() {
                 if let Some(row) = self.model.rows.get_mut(*row) {
                     row.driven = group.kind == "drive";

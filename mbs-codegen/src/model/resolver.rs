@@ -41,6 +41,8 @@ pub(super) struct Resolver<'a> {
     pub(super) groups: Vec<Group>,
     pub(super) loops: Vec<LoopFrame>,
     pub(super) rounds: usize,
+    /// Rows of constraints that effects release, left out of the model.
+    pub(super) released_rows: usize,
     pub(super) pass: Pass,
 }
 
@@ -68,7 +70,7 @@ impl Resolver<'_> {
 
     /// The group of a statement: a new one, or in a loop the one that an earlier round began.
     pub(super) fn group(&mut self, name: &Name, kind: &'static str) -> Result<usize, Fault> {
-        let rows = |kind| matches!(kind, "constraint" | "drive");
+        let rows = |kind| matches!(kind, "constraint" | "drive" | "released");
         let clash = |group: &Group| {
             group.name.text == name.text
                 && rows(group.kind) == rows(kind)

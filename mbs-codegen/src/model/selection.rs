@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::names::{Elsewhere, report_double};
+use super::release::releases;
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast::{Name, Statement, StatementKind};
 use crate::syntax::rust_identifiers::UNUSABLE;
@@ -42,7 +43,8 @@ pub fn select(
     statements: &[Statement],
     diagnostics: &mut Diagnostics,
 ) -> (Vec<Selection>, Selection, Vec<Name>) {
-    let mut work = Effects { declared: BTreeMap::new(), parts: Vec::new(), selected: Vec::new() };
+    let mut work =
+        Effects { declared: BTreeMap::new(), parts: Vec::new(), selected: Vec::new(), released: Vec::new() };
     work.divide(statements, diagnostics);
     let scenes: Vec<_> = statements
         .iter()
@@ -95,6 +97,8 @@ struct Effects<'a> {
     parts: Vec<(Option<usize>, &'a Statement)>,
     /// Name of each effect, and `true` if a scene selects it.
     selected: Vec<(&'a Name, bool)>,
+    /// Effects with the constraints outside of effects that they release.
+    released: Vec<(usize, &'a Name)>,
 }
 
 impl<'a> Effects<'a> {
@@ -117,6 +121,8 @@ impl<'a> Effects<'a> {
                 _ => self.parts.push((inside, statement)),
             }
         }
+        let effects: Vec<&Name> = self.selected.iter().map(|(name, _)| *name).collect();
+        self.released = releases(&self.parts, &effects, diagnostics);
     }
 
     /// Indices of the effects that a scene names; of equal names all, so that none of their declarations is missing.
@@ -192,6 +198,21 @@ impl<'a> Effects<'a> {
                 let is_new = name.is_none_or(|name| declared.insert(name));
                 is_new || !effect.is_some_and(|effect| self.is_repeated(effect))
             });
+        let released: BTreeSet<&str> = self
+            .released
+            .iter()
+            .filter(|(effect, _)| chosen.contains(effect))
+            .map(|(_, name)| name.text.as_str())
+            .collect();
+        let statements = statements.map(|(effect, statement)| {
+            let mut statement = (*statement).clone();
+            if let (None, StatementKind::Constraint { name, released: is_released, .. }) =
+                (effect, &mut statement.kind)
+            {
+                *is_released = released.contains(name.text.as_str());
+            }
+            statement
+        });
         let effects = chosen.iter().filter(|index| !self.is_repeated(**index));
         let effects = effects.filter_map(|index| self.selected.get(*index));
         Selection {
@@ -200,7 +221,7 @@ impl<'a> Effects<'a> {
             is_whole: true,
             elsewhere: self.elsewhere(chosen),
             effects: effects.map(|(name, _)| name.text.clone()).collect(),
-            statements: statements.map(|(_, statement)| (*statement).clone()).collect(),
+            statements: statements.collect(),
         }
     }
 

@@ -39,7 +39,7 @@ fn read_rows(parser: &mut Parser<'_>, name: Name) -> Read<StatementKind> {
                 let message = format!("constraint `{}` has no equation", name.text);
                 parser.diagnostics.report(name.span, message, "write `lhs == rhs;` in the braces");
             }
-            return Ok(StatementKind::Constraint { name, redundant, within, items });
+            return Ok(StatementKind::Constraint { name, redundant, within, items, released: false });
         }
         let start = parser.rest();
         let read = if parser.at_word("for") {
@@ -61,7 +61,7 @@ fn read_rows(parser: &mut Parser<'_>, name: Name) -> Read<StatementKind> {
                 }
                 close_brackets(parser, start);
                 if !behind_equation(parser) {
-                    return Ok(StatementKind::Constraint { name, redundant, within, items });
+                    return Ok(StatementKind::Constraint { name, redundant, within, items, released: false });
                 }
             }
         }

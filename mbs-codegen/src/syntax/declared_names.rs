@@ -39,6 +39,7 @@ impl StatementKind {
             | StatementKind::EndFor
             | StatementKind::Effect { .. }
             | StatementKind::EndEffect
+            | StatementKind::Release { .. }
             | StatementKind::Scene { .. }
             | StatementKind::EndScene
             | StatementKind::Picture { .. } => return None,

@@ -1,7 +1,7 @@
 //! Words that begin a statement; [`super::statement`] calls the reader of each.
 
 /// Words that begin a statement of this version.
-pub const STATEMENTS: [&str; 33] = [
+pub const STATEMENTS: [&str; 34] = [
     "const",
     "param",
     "input",
@@ -20,6 +20,7 @@ pub const STATEMENTS: [&str; 33] = [
     "out",
     "for",
     "effect",
+    "release",
     "scene",
     "start",
     "state",

@@ -36,6 +36,7 @@ pub mod tokens;
 mod unit;
 pub mod unit_symbols;
 pub mod unreadable;
+mod written_expressions;
 
 use proc_macro2::{Ident, Span, TokenStream};
 

@@ -37,6 +37,25 @@ pub fn read_effect(parser: &mut Parser<'_>) -> Read<StatementKind> {
     Ok(StatementKind::Effect { name })
 }
 
+const RELEASE: &str = "write `effect play { release pin; … }`";
+/// Reads the constraints that an effect releases, after the keyword.
+pub fn read_release(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let mut names = vec![parser.name(RELEASE)?];
+    while parser.take(',') {
+        names.push(parser.name(RELEASE)?);
+    }
+    if matches!(parser.peek(), TokenKind::Punctuation('.', _) | TokenKind::Open('[')) {
+        return parser.expected("`;`", "a release takes all rows of a constraint: write `release pin;`");
+    }
+    end(parser, RELEASE)?;
+    Ok(StatementKind::Release { names })
+}
+
+const OF_LOOPS: &str =
+    "move it out of the loop: a release takes all rows of a constraint, those of all rounds too";
+const OUTSIDE: &str = "move it into the effect that takes the constraint's place: `effect play { release pin; … }`; what no scene \
+                       has is not written";
+
 const SCENE: &str = "write `scene Loaded = weight + guide_friction;`";
 /// Statements in the braces of a scene.
 const OF_SCENE: &str =
@@ -143,6 +162,14 @@ impl Open {
             return None;
         }
         let (word, brace) = match kind {
+            StatementKind::Release { .. } if self.braces.last() != Some(&Brace::Effect) => {
+                let (message, help) = match self.braces.contains(&Brace::Effect) {
+                    true => ("`release` cannot stand in a loop", OF_LOOPS),
+                    false => ("`release` stands outside of an effect", OUTSIDE),
+                };
+                diagnostics.report(span, message, help);
+                return None;
+            }
             StatementKind::For(_) => {
                 self.braces.push(Brace::Loop);
                 return Some(kind);

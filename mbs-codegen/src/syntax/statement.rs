@@ -18,7 +18,7 @@ use super::other_forms;
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::picture;
 use super::quotation::until_end;
-use super::scene::{Open, read_effect, read_scene};
+use super::scene::{Open, read_effect, read_release, read_scene};
 use super::statement_end::{at_statement, end};
 use super::tokens::{Token, TokenKind};
 use super::unit::declared_type;
@@ -249,6 +249,7 @@ fn reader(word: &str) -> Option<Reader> {
         "out" => read_out,
         "for" => |parser| read_loop(parser).map(StatementKind::For),
         "effect" => read_effect,
+        "release" => read_release,
         "scene" => read_scene,
         "start" => dynamics::read_start,
         "state" => dynamics::read_state,

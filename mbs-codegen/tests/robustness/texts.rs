@@ -97,6 +97,7 @@ constraint slot { s == 300mm + 50mm*cos(psi2); }
 drive lead: psi1 == 0.3 + t/1s;
 start psi2 = 0.7 rate 2;
 out squeeze: N = lambda(slot) + z;
+effect loose { release slot; }
 out torque_1: N*m = effort(lead);
 ";
 
@@ -149,7 +150,7 @@ out slip: [m/s; 3] = [u_slip, v_slip, w_slip];
 
 pub const TEXTS: [&str; 6] = [FOUR_BAR, PRESS, MACHINE, ARM, DRAWN, CAMS];
 
-pub const SOUP: [&str; 117] = [
+pub const SOUP: [&str; 118] = [
     "foot",
     "circle",
     "flat",
@@ -174,6 +175,7 @@ pub const SOUP: [&str; 117] = [
     "limit",
     "independent",
     "effect",
+    "release",
     "scene",
     "function",
     "periodic",

@@ -18,6 +18,7 @@ mod d4_zero_start;
 mod declared;
 mod declared_in_loops;
 mod pulses;
+mod released;
 mod runs;
 mod t7_contact_damping;
 mod texts;

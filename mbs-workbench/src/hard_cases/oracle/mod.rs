@@ -13,6 +13,7 @@ mod laws;
 mod mechanics;
 mod number;
 mod quantities;
+mod rows;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -21,22 +22,19 @@ mod tree;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use mbs_codegen::syntax_tree::{
-    Element, Equation, Expression, Item, Operation, Operator, StatementKind, Type,
-};
+use mbs_codegen::syntax_tree::{Element, Equation, Expression, Operation, Operator, StatementKind, Type};
 
 use self::curves::Curve;
 pub use self::evaluation::Gap;
 use self::evaluation::{Definition, Names, Scope, Value, joined, value};
 pub use self::feet::{Follower, Foot, Outline};
-use self::functions::dot;
 pub use self::held::{HeldForces, Slack};
 pub use self::laws::Jet;
 use self::laws::Laws;
 use self::mechanics::mechanics;
 use self::number::{Dual, Number};
 pub use self::state::{Balance, OracleRow, OracleState, Quantity};
-use self::tree::{Placed, equations, unrolled};
+use self::tree::{Placed, unrolled};
 
 /// Direction of the first derivative.
 #[derive(Clone, Copy)]
@@ -63,6 +61,8 @@ pub struct Oracle {
     curves: Rc<Vec<Curve>>,
     /// Names of constraints and drives, with the indices of their rows.
     groups: Vec<(String, core::ops::Range<usize>)>,
+    /// Constraints that effects release, with the number of rows that are not there.
+    released: BTreeMap<String, usize>,
     /// Frictions with bristles by their places in the text: each has a state behind those of the text.
     bristled: Vec<usize>,
     /// Bodies whose Euler parameters are coordinates, by their places in the text: each has a row of its own, e·e = 1.
@@ -77,9 +77,6 @@ fn components(name: &str, shape: &[usize]) -> Vec<String> {
     }
     names
 }
-
-/// Name of a constraint, indices of its rows, their values, and whether a drive gives them.
-type See<'a> = &'a mut dyn FnMut(&str, core::ops::Range<usize>, &[(Number, bool)]);
 
 impl Oracle {
     /// The text in a scene (`None`: all effects), with values of its parameters and inputs by component.
@@ -112,6 +109,11 @@ impl Oracle {
             groups.push((group.to_string(), rows))
         })?;
         oracle.groups = groups;
+        let mut released: BTreeMap<String, usize> = BTreeMap::new();
+        oracle.each_row_of(true, &oracle.names(&state, Along::Nothing), &mut |group, rows, _| {
+            *released.entry(group.to_string()).or_default() += rows.len();
+        })?;
+        oracle.released = released;
         Ok(oracle)
     }
 
@@ -196,6 +198,7 @@ impl Oracle {
             laws: Rc::new(laws),
             curves: Rc::new(curves),
             groups: Vec::new(),
+            released: BTreeMap::new(),
             bristled,
             turning: Vec::new(),
         })
@@ -276,6 +279,9 @@ impl Oracle {
         for (group, rows) in &self.groups {
             names.lambda.entry(group.clone()).or_default().extend(rows.clone().map(multiplier));
         }
+        for (group, rows) in &self.released {
+            names.lambda.insert(group.clone(), vec![Number::still(0.0); *rows]);
+        }
         names
     }
 
@@ -298,61 +304,6 @@ impl Oracle {
             bodies.push(index);
         }
         Ok(bodies)
-    }
-
-    /// Shows `see` the rows of each equation: its constraint, their indices, their values.
-    fn each_row(&self, names: &Names, see: See<'_>) -> Result<(), Gap> {
-        let mut count = 0;
-        let mut show = |group: &str, found: Vec<(Number, bool)>| {
-            see(group, count..count + found.len(), &found);
-            count += found.len();
-        };
-        for (index, placed) in self.placed.iter().enumerate() {
-            let Placed { kind, rounds } = placed;
-            match kind {
-                StatementKind::Element { name, .. } if self.turning.contains(&index) => {
-                    let e = orientation(placed, names)?.unwrap_or_default();
-                    let square = dot(&e, &e) - Number::still(1.0);
-                    show(&name.text, vec![(square, true)]);
-                }
-                StatementKind::Constraint { name, items, .. } => {
-                    let mut rounds = rounds.clone();
-                    equations(items, names, &mut rounds, &mut |item, rounds| {
-                        if let Item::Equation(equation) = item {
-                            let found = residual(equation, &Scope::of(names, rounds))?;
-                            show(&name.text, found.items.into_iter().map(|number| (number, true)).collect());
-                        }
-                        if let Item::On { point, curve, .. } = item {
-                            let scope = Scope::of(names, rounds);
-                            // A row that is left out would be one that always holds.
-                            let found = scope.curve(&curve.text).and_then(|index| names.curves.get(index));
-                            let found = found.ok_or_else(|| Gap(format!("the curve `{}`", curve.text)))?;
-                            let row = found.row(&value(point, &scope)?, &scope)?;
-                            show(&name.text, vec![(row, true)]);
-                        }
-                        Ok(())
-                    })?;
-                }
-                StatementKind::Drive { name, equation } => {
-                    let scope = Scope::of(names, rounds);
-                    let found = match prescribed(equation) {
-                        None => {
-                            let found = residual(equation, &scope)?;
-                            found.items.into_iter().map(|number| (number, true)).collect()
-                        }
-                        Some(driven) => {
-                            let driven = value(&driven, &scope)?.number()?;
-                            let asked = value(&equation.right, &scope)?.number()?;
-                            // The rate is known, the phase itself is not.
-                            vec![(Number { rate: driven.rate - asked.value, ..driven }, false)]
-                        }
-                    };
-                    show(&name.text, found);
-                }
-                _ => {}
-            }
-        }
-        Ok(())
     }
 
     /// Σ |∂Φ/∂q_j| s_j of each row: what moves it where all coordinates move by their scales `scales`.

@@ -67,6 +67,25 @@ fn a_fault_in_any_part_of_the_state_shows() {
 }
 
 #[test]
+fn rows_that_effects_release_are_not_there_and_carry_no_force() {
+    let base = PENDULUM.replace(
+        "constraint rod {",
+        "force drag: [1 [1/m]*lambda(rod.0) + lambda(rod[1])*1 [1/m^2], 0] on p; constraint rod { p[0] == L*1;",
+    );
+    let source =
+        format!("{base} effect none {{}} effect cut {{ release rod; }} scene Whole = none; scene Cut = cut;");
+    let known = |name: &str| Some(if name == "L" { 2.0 } else { 3.0 });
+    let of = |scene| Oracle::read(&source, scene, &known).expect("a text");
+    assert_eq!([None, Some("Cut"), Some("Whole")].map(|scene| of(scene).row_count()), [0, 0, 2]);
+    let falling = OracleState { qdd: vec![0.0, -10.0], lambda: Vec::new(), ..lowest(1.5) };
+    for w in [[1.0, 0.0], [0.3, -0.7]] {
+        let balance = of(Some("Cut")).equations_of_motion(&falling, &w).expect("a balance");
+        assert!(balance.open() < 1e-15, "{balance:?}");
+    }
+    assert!(of(Some("Cut")).rows(&falling).expect("rows").is_empty());
+}
+
+#[test]
 fn loops_effects_and_sums_are_read_in_the_order_of_the_text() {
     let source = "mechanism Chain; const N: 1 = 3; coord a: [rad; N]; coord s: m; \
         effect up { for i in 0..N { let share = 1 [m]*(i + 1); constraint c { share*sin(a[i]) == 0; } } } \

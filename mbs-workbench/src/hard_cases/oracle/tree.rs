@@ -54,16 +54,27 @@ fn selected(all: &[Statement], scene: Option<&str>) -> Vec<StatementKind> {
         _ => None,
     });
     let is_in = |effect: &str| effects.is_none_or(|effects| effects.iter().any(|name| name.text == effect));
-    let mut kept = Vec::new();
-    let (mut outside, mut in_scene) = (true, false);
+    let (mut kept, mut released) = (Vec::new(), Vec::new());
+    // Of each kept statement: `true` outside of all effects.
+    let mut of_base = Vec::new();
+    let (mut outside, mut in_effect, mut in_scene) = (true, false, false);
     for statement in all {
         match &statement.kind {
-            StatementKind::Effect { name } => outside = is_in(&name.text),
-            StatementKind::EndEffect => outside = true,
+            StatementKind::Effect { name } => (outside, in_effect) = (is_in(&name.text), true),
+            StatementKind::EndEffect => (outside, in_effect) = (true, false),
             StatementKind::Scene { open, .. } => in_scene = *open,
             StatementKind::EndScene => in_scene = false,
             _ if in_scene || !outside => {}
-            kind => kept.push(kind.clone()),
+            StatementKind::Release { names } => released.extend(names.iter().map(|name| name.text.clone())),
+            kind => {
+                kept.push(kind.clone());
+                of_base.push(!in_effect);
+            }
+        }
+    }
+    for (kind, of_base) in kept.iter_mut().zip(of_base) {
+        if let StatementKind::Constraint { name, released: is_released, .. } = kind {
+            *is_released = of_base && released.contains(&name.text);
         }
     }
     kept
