@@ -68,35 +68,72 @@ pub fn ci() -> Result<(), String> {
 /// without optimisation, with the crates that the tests have built.
 const FEW_CASES: &str = "change_point,lock_up,pendulum";
 
-/// All of [`ci`], and checks that take long or need further tools.
+/// A part of [`full`]: its name and its checks.
+type Part = (&'static str, fn() -> Result<(), String>);
+
+/// Parts of [`full`] in their order.
+const PARTS: [Part; 13] = [
+    ("ci", ci),
+    ("long", long),
+    ("stack", stack),
+    ("browser", browser::run),
+    ("book", documents::book),
+    ("package", documents::package),
+    ("growth", growth::run),
+    ("lines", || lines::run(false)),
+    ("costs", || costs::peers().and_then(|()| costs::index())),
+    ("hard-cases", || step(&mut hard_cases(&["--release"], &["--variants", "8"]))),
+    ("planted", || planted::run(&[])),
+    ("fuzz", || fuzz::run(60, false)),
+    ("oldest", oldest),
+];
+
+/// All of [`ci`], and checks that take long or need further tools: all parts, or those of these `names`. A part that fails does not keep
+/// the others from running.
 ///
 /// # Errors
-/// Those of its parts.
-pub fn full() -> Result<(), String> {
-    // Before the checks that take long.
-    need("npm", "install Node.js 20 or newer")?;
-    documents::need_book()?;
-    need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
-    need("cargo-fuzz", "`cargo install cargo-fuzz`")?;
-    ci()?;
+/// The parts that failed, an unknown name, or a missing tool with its cure.
+pub fn full(names: &[&str]) -> Result<(), String> {
+    if let Some(unknown) = names.iter().find(|name| PARTS.iter().all(|(part, _)| part != *name)) {
+        let known = PARTS.map(|(part, _)| part).join(", ");
+        return Err(format!("`full` has no part `{unknown}`\nknown: {known}"));
+    }
+    if names.is_empty() {
+        // Before the checks that take long.
+        need("npm", "install Node.js 20 or newer")?;
+        documents::need_book()?;
+        need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
+        need("cargo-fuzz", "`cargo install cargo-fuzz`")?;
+    }
+    let mut failed = Vec::new();
+    for (name, run) in PARTS.iter().filter(|(part, _)| names.is_empty() || names.contains(part)) {
+        println!("\n==== {name}");
+        if let Err(reason) = run() {
+            eprintln!("{name}: {reason}");
+            failed.push(*name);
+        }
+    }
+    match failed.as_slice() {
+        [] => Ok(()),
+        failed => Err(format!("failed; again: `cargo xtask full {}`", failed.join(" "))),
+    }
+}
+
+/// Tests with the feature `long`: all of them, with those that fail.
+fn long() -> Result<(), String> {
+    let mut failed = Vec::new();
     for (package, test) in LONG {
         let only = ["--test", test];
         let only = if test.is_empty() { &[][..] } else { &only };
-        step(command("cargo", &["test", "-p", package, "--features", "long"]).args(only))?;
+        let options = ["test", "-p", package, "--features", "long", "--no-fail-fast"];
+        failed.extend(step(command("cargo", &options).args(only)).err());
     }
-    // The stack of optimised code.
-    step(&mut command("cargo", &["test", "--release", "-p", "mbs-motions", "--test", "stiff", "of_stack"]))?;
-    browser::run()?;
-    documents::book()?;
-    documents::package()?;
-    growth::run()?;
-    lines::run(false)?;
-    costs::peers()?;
-    costs::index()?;
-    step(&mut hard_cases(&["--release"], &["--variants", "8"]))?;
-    planted::run(&[])?;
-    fuzz::run(60, false)?;
-    oldest()
+    if failed.is_empty() { Ok(()) } else { Err(failed.join("\n")) }
+}
+
+/// The stack of optimised code.
+fn stack() -> Result<(), String> {
+    step(&mut command("cargo", &["test", "--release", "-p", "mbs-motions", "--test", "stiff", "of_stack"]))
 }
 
 /// The list of hard cases: it fails where one of its runs is wrong. `profile`: options of `cargo run`.

@@ -19,8 +19,8 @@ const USAGE: &str = "\
 cargo xtask TASK
 
 ci                       what a change must pass: format, lints, documents, tests, counts of instructions, hard cases
-full                     `ci`, tests with `long`, reports in a browser, the book, packages, growth, lines, costs, hard cases, planted faults, fuzzing,
-                         Rust 1.89 where it is installed
+full [PART…]             ci, long (tests with this feature), stack, browser, book, package, growth, lines, costs, hard-cases, planted, fuzz,
+                         oldest (Rust 1.89 where it is installed): all, or these
 bench [OPTIONS]          kinematics, dynamics and linkages against their peers; `--docs` writes the tables of the book
 growth                   times that a compiler takes over long mechanisms
 instructions [--update]  instructions of evaluations and steps, compared with the stored counts or stored
@@ -48,7 +48,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         ("ci", []) => checks::ci(),
-        ("full", []) => checks::full(),
+        ("full", parts) => checks::full(parts),
         ("bench", options) => checks::bench(options),
         ("growth", []) => growth::run(),
         ("instructions", []) => instructions::run(false),
