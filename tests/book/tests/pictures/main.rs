@@ -38,6 +38,7 @@ macro_rules! begun {
 mod contact;
 mod friction;
 mod motors;
+mod slopes;
 mod springs;
 mod tyres;
 
