@@ -9,7 +9,7 @@ use std::{env, fs};
 
 use mbs_workbench::study::plot::{Curve, Plot};
 
-/// What `$seen` says of a run at `$parts` equal parts of the time from 0 to `$until`, and at its start.
+/// Values of `$seen` of a run at its start and at `$parts` equal parts of the time from 0 to `$until`.
 macro_rules! traced {
     ($text:expr, $until:expr, $parts:expr, |$run:ident| $seen:expr) => {{
         use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
@@ -25,7 +25,7 @@ macro_rules! traced {
     }};
 }
 
-/// What `$seen` says of the start of a text.
+/// Value of `$seen` at the start of a text.
 macro_rules! begun {
     ($text:expr, |$run:ident| $seen:expr) => {{
         use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation};
@@ -38,6 +38,7 @@ macro_rules! begun {
 mod contact;
 mod friction;
 mod motors;
+mod slopes;
 mod springs;
 mod tyres;
 
