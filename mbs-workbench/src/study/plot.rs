@@ -180,8 +180,10 @@ fn ticks(low: f64, high: f64) -> Vec<f64> {
     let power = 10.0_f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= rough * 0.999);
     let step = step.unwrap_or(10.0 * power);
-    let first = (low / step).ceil() as i64;
-    let count = (((high / step).floor() as i64) - first + 1).clamp(0, 20);
+    // An end that is a round number stays one: 0.3 is less than 3 times 0.1.
+    let rounding = 1e-9;
+    let first = (low / step - rounding).ceil() as i64;
+    let count = (((high / step + rounding).floor() as i64) - first + 1).clamp(0, 20);
     (0..count).map(|k| (first + k) as f64 * step).collect()
 }
 
@@ -377,6 +379,8 @@ mod tests {
     fn ticks_are_round_and_within_the_axis() {
         assert_eq!(ticks(-180.0, 180.0), [-100.0, 0.0, 100.0]);
         assert_eq!(ticks(0.0, 1.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
+        assert_eq!(ticks(0.0, 0.3).len(), 4);
+        assert_eq!(ticks(0.3, 0.6).len(), 4);
         assert_eq!(parts_of_a_turn([-179.75, 180.0], WIDE).len(), 8);
         assert_eq!(parts_of_a_turn([-180.0, 180.0], NARROW), [-180.0, -90.0, 0.0, 90.0, 180.0]);
         assert_eq!(parts_of_a_turn([0.0, 10.0], WIDE), ticks(0.0, 10.0));
