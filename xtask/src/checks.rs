@@ -25,6 +25,12 @@ const LONG: [(&str, &str); 13] = [
     ("mbs-faults", "nothing_follows"),
 ];
 
+/// Options of tests that are run with optimisation: the stack that code takes, and whole studies.
+const OPTIMISED: [&[&str]; 2] = [
+    &["-p", "mbs-motions", "--test", "stiff", "of_stack"],
+    &["-p", "mechanisms", "--features", "long", "--test", "catalogue", "desmo::whole"],
+];
+
 /// Format, lints, documentation, tests, counts of instructions, hard cases.
 ///
 /// # Errors
@@ -75,7 +81,7 @@ type Part = (&'static str, fn() -> Result<(), String>);
 const PARTS: [Part; 13] = [
     ("ci", ci),
     ("long", long),
-    ("stack", stack),
+    ("optimised", optimised),
     ("browser", browser::run),
     ("book", documents::book),
     ("package", documents::package),
@@ -131,9 +137,12 @@ fn long() -> Result<(), String> {
     if failed.is_empty() { Ok(()) } else { Err(failed.join("\n")) }
 }
 
-/// The stack of optimised code.
-fn stack() -> Result<(), String> {
-    step(&mut command("cargo", &["test", "--release", "-p", "mbs-motions", "--test", "stiff", "of_stack"]))
+/// Tests of optimised code.
+fn optimised() -> Result<(), String> {
+    for options in OPTIMISED {
+        step(command("cargo", &["test", "--release"]).args(options))?;
+    }
+    Ok(())
 }
 
 /// The list of hard cases: it fails where one of its runs is wrong. `profile`: options of `cargo run`.

@@ -19,7 +19,7 @@ const USAGE: &str = "\
 cargo xtask TASK
 
 ci                       what a change must pass: format, lints, documents, tests, counts of instructions, hard cases
-full [PART…]             ci, long (tests with this feature), stack, browser, book, package, growth, lines, costs, hard-cases, planted, fuzz,
+full [PART…]             ci, long (tests with this feature), optimised, browser, book, package, growth, lines, costs, hard-cases, planted, fuzz,
                          oldest (Rust 1.89 where it is installed): all, or these
 bench [OPTIONS]          kinematics, dynamics and linkages against their peers; `--docs` writes the tables of the book
 growth                   times that a compiler takes over long mechanisms

@@ -200,7 +200,7 @@ fn coarse_tables_of_a_high_lift_have_a_mismatch() {
     assert!(largest[0] > 1e-5 && largest[0] < 1e-4, "{largest:?}");
 }
 
-/// Whole studies, in which every number is computed.
+/// Whole studies, in which every number is computed: half an hour without optimisation.
 #[cfg(feature = "long")]
 mod whole {
     use super::*;
@@ -218,6 +218,7 @@ mod whole {
 
     /// Places are parameters: the mirror image of the ready pair, whose cams turn the other way, has its figures.
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "takes long without optimisation: `cargo test --release`")]
     fn a_mirrored_valvetrain_has_the_figures_of_the_ready_one() {
         let of_x = STUDY.parameters.iter().filter(|one| one.name.ends_with("_x"));
         let mut mirrored = vec![("sense", -1.0)];
@@ -240,6 +241,7 @@ mod whole {
 
     /// A high lift has coarse tables that contradict each other, a slow cam small figures, a quick one an undercut.
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "takes long without optimisation: `cargo test --release`")]
     fn a_study_ends_with_values_far_from_its_own() {
         let (_, high) = tables(&[("lift", 0.02)]);
         assert_eq!(high[2].len(), 4, "{:?}", high[2]);
