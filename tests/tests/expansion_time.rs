@@ -8,8 +8,9 @@ use std::fs;
 use std::time::{Duration, Instant};
 use texts::workspace;
 
-/// Longest expansion in a debug build, at the best of several runs, of a text of up to [`VALUES`]; of more in proportion.
-const LONGEST: Duration = Duration::from_millis(50);
+/// Longest expansion in a debug build, at the best of several runs, of a text of up to [`VALUES`]; of more in proportion. A quiet machine
+/// takes half of it, one whose cores are shared two thirds.
+const LONGEST: Duration = Duration::from_millis(100);
 /// Emitted `let`s: the kinematics of any mechanism here. Scenes with masses and pins have several times as many.
 const VALUES: u32 = 1000;
 const RUNS: usize = 12;
@@ -23,7 +24,7 @@ fn processor_time() -> Option<Duration> {
 }
 
 #[test]
-fn every_text_expands_within_50_ms_a_thousand_values() {
+fn every_text_expands_within_100_ms_a_thousand_values() {
     let as_users_write = |path: &str| LARGE_ON_PURPOSE.iter().all(|large| !path.ends_with(large));
     for text in workspace().into_iter().filter(|(path, _)| as_users_write(path)) {
         let time = || {
