@@ -38,6 +38,7 @@ pub fn read_effect(parser: &mut Parser<'_>) -> Read<StatementKind> {
 }
 
 const RELEASE: &str = "write `effect play { release pin; … }`";
+
 /// Reads the constraints that an effect releases, after the keyword.
 pub fn read_release(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let mut names = vec![parser.name(RELEASE)?];
