@@ -55,6 +55,7 @@ use emit::rust::Lengths;
 pub use model::quantity::{Quantity, quantity};
 use model::scene::Scene;
 use model::scenes::Scenes;
+pub use model::selection::WHOLE;
 pub use outline::declarations::Declaration;
 pub use outline::effects::{EffectGroups, effects, statement as scene_statement};
 pub use outline::{Call, DeclaredFunction, Outline, Variable, calls};

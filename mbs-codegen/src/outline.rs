@@ -22,6 +22,8 @@ pub struct Outline {
     pub name: String,
     /// Names of its scenes; none where it declares none.
     pub scenes: Vec<String>,
+    /// `true` where it declares scenes, and all effects together are a mechanism too.
+    pub has_whole: bool,
     /// Functions that the caller gives, in the order of `new`; each one of an array.
     pub functions: Vec<DeclaredFunction>,
 }
@@ -146,6 +148,7 @@ pub(crate) fn names(text: &Text, scenes: &Scenes) -> Outline {
     Outline {
         name: text.header.label(),
         scenes: scenes.scenes.iter().filter_map(Scene::label).map(str::to_owned).collect(),
+        has_whole: scenes.whole.as_ref().is_some_and(|whole| crate::translate_scene(whole).is_ok()),
         functions: scenes.shared.functions.iter().flat_map(declared_functions).collect(),
     }
 }

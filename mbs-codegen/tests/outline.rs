@@ -40,9 +40,10 @@ fn scenes_functions_and_parameters_are_named() {
     let found = outline(text);
     let names = |list: &[&str]| list.iter().map(|name| name.to_string()).collect::<Vec<_>>();
     match found {
-        Ok(Outline { name, scenes, functions }) => {
+        Ok(Outline { name, scenes, has_whole, functions }) => {
             assert_eq!(name, "Cam");
             assert_eq!(scenes, names(&["First", "Second"]));
+            assert!(has_whole);
             let called: Vec<_> = functions
                 .iter()
                 .map(|f| (f.name.as_str(), f.unit.as_str(), f.argument_unit.as_str(), f.continuity, f.period))

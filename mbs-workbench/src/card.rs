@@ -98,7 +98,7 @@ impl Card {
     pub fn name(&self) -> String {
         let name = self.text_name();
         match self.equations().scene() {
-            "AllEffects" => name,
+            mbs_codegen::WHOLE => name,
             scene => format!("{name}:{scene}"),
         }
     }

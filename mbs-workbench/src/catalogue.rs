@@ -69,8 +69,12 @@ impl<'a> Catalogue<'a> {
         self.get(name).ok_or_else(|| self.unknown(name))
     }
 
+    /// The mechanism called `name`, or the only scene of the text that is called so.
     fn get(self, name: &str) -> Option<&'a Card> {
-        self.cards.iter().find(|card| card.is_called(name))
+        self.cards.iter().find(|card| card.is_called(name)).or_else(|| {
+            let mut scenes = self.cards.iter().filter(|card| card.text_name() == name);
+            scenes.next().filter(|_| scenes.next().is_none())
+        })
     }
 
     /// Reason why there is no mechanism of this name: it is a text of several scenes, or unknown.

@@ -1,10 +1,15 @@
-"""Motion of the engine of `mechanisms/src/slider_crank_engine.rs` by equations derived by hand: one degree of freedom.
+"""Motion of the engine of `mechanisms/src/slider_crank_engine.rs` by equations derived by hand: one degree of freedom, three with
+play in the piston's pin.
 
     python3 slider_crank_engine.py > slider_crank_engine.txt     needs numpy and scipy
+    python3 slider_crank_engine.py clearance > slider_crank_engine_clearance.txt     takes minutes
     python3 slider_crank_engine.py gas                           harmonics of the gas pressure, as they stand in the text
 
 Newton's and Euler's equations of piston, rod and crank are solved for the acceleration of the crank and the forces in the pins;
 friction makes them depend on the sizes of these forces, which a fixed-point iteration finds. The state is (theta, omega).
+
+With play the force between pin and eye is a law of the state (theta, phi, y, and their rates), and the same equations have the
+accelerations of rod and piston as unknowns. Each touch and each lift-off ends an integration.
 """
 
 import sys
@@ -86,6 +91,88 @@ def motion(e, times, tolerance, step):
     return [(t, theta, omega, solve(e, theta, omega)[1]) for t, theta, omega in zip(run.t, *run.y)]
 
 
+# Of the effect `clearance`: radial play (m), stiffness (N/m), damping (s/m), coefficient of friction, mass of the bush (kg).
+PLAY, EYE, DAMPING, MU_EYE, BUSH = 15e-6, 5e8, 20.0, 0.004, 0.04
+
+
+def eye(e, state):
+    """Depth of the pin in the eye, its rate, and the unit vector from the eye's centre to the pin's."""
+    theta, phi, y, omega, phi_rate, y_rate = state
+    r, L = e["r"], e["L"]
+    off = np.array([r * np.sin(theta) + L * np.sin(phi), y - r * np.cos(theta) - L * np.cos(phi)])
+    rate = np.array([r * np.cos(theta) * omega + L * np.cos(phi) * phi_rate,
+                     y_rate + r * np.sin(theta) * omega + L * np.sin(phi) * phi_rate])
+    distance = np.hypot(*off)
+    out = off / distance
+    return distance - PLAY, out @ rate, out
+
+
+def loose(e, state, touching):
+    """Accelerations of crank, rod and piston, the force of the rod on the piston, and its size."""
+    theta, phi, y, omega, phi_rate, y_rate = state
+    r, L = e["r"], e["L"]
+    # Rod and bush together: mass, centre of mass, moment of inertia about it.
+    mass = e["rod_mass"] + BUSH
+    d = (e["rod_mass"] * e["d"] + BUSH * L) / mass
+    inertia = e["rod_inertia"] + e["rod_mass"] * (d - e["d"])**2 + BUSH * (L - d)**2
+    depth, depth_rate, out = eye(e, state)
+    push = EYE * depth * max(1 + DAMPING * depth_rate, 0) if touching else 0.0
+    on_piston = -push * out
+    pin, along = r * np.array([-np.sin(theta), np.cos(theta)]), np.array([-np.sin(phi), np.cos(phi)])
+    across = np.array([-np.cos(phi), -np.sin(phi)])
+    pin_slope = r * np.array([-np.cos(theta), -np.sin(theta)])
+    near, far = -d * along, (L - d) * along
+
+    outer = -np.pi / 4 * e["bore"]**2 * pressure(theta) - e["piston_mass"] * e["g"]
+    outer += e["stiffness"] * (TOP - y - UNLOADED) - e["viscous"] * y_rate
+    rings = -e["mu_liner"] * np.tanh(y_rate / SMOOTH) * abs(on_piston[0])
+    piston = (outer + rings + on_piston[1]) / e["piston_mass"]
+    torque = e["stall"] * (1 - omega / e["idle"]) - e["drag"] * omega * abs(omega)
+    big = -e["mu_pins"] * np.tanh(BIG_END * (phi_rate - omega) / SMOOTH) * BIG_END
+    small = -MU_EYE * np.tanh(SMALL_END * phi_rate / SMOOTH) * SMALL_END * push
+
+    # Unknowns: accelerations of crank and rod, Cx, Cy (crank on rod).
+    towards = -pin * omega**2 - d * along * phi_rate**2
+    matrix, right = np.zeros((4, 4)), np.zeros(4)
+    for k in range(2):
+        matrix[k, 0], matrix[k, 1] = mass * pin_slope[k], mass * d * across[k]
+        matrix[k, 2 + k] = -1
+        right[k] = -on_piston[k] - mass * (towards[k] + (e["g"] if k else 0))
+    matrix[2] = [0, inertia, near[1], -near[0]]
+    matrix[3] = [e["wheel"], 0, -pin[1], pin[0]]
+    turns = far[0] * -on_piston[1] + far[1] * on_piston[0]
+    found = np.zeros(4)
+    for _ in range(200):
+        crank = np.hypot(*found[2:])
+        right[2], right[3] = turns + big * crank + small, torque - big * crank
+        before, found = found, np.linalg.solve(matrix, right)
+        if np.max(np.abs(found - before)) <= 1e-13 * np.max(np.abs(found)):
+            return np.array([found[0], found[1], piston]), on_piston, push
+    raise RuntimeError("the forces do not converge")
+
+
+def loose_motion(e, times, tolerance, step):
+    """(t, theta, phi, y, omega, side load, force in the eye) at `times`, and the number of touches and lift-offs."""
+    state = np.array([0, 0, e["r"] + e["L"] - PLAY, e["speed"], -e["r"] / e["L"] * e["speed"], 0.0])
+    touches, changes, t, rows = True, 0, 0.0, []
+    while t < times[-1]:
+        rates = lambda _, state: [*state[3:], *loose(e, state, touches)[0]]
+        # Of an open gap the depth, of a closed one the force: it never pulls.
+        ends = lambda _, state: eye(e, state)[0]
+        ends.terminal, ends.direction = True, -1 if touches else 1
+        ahead = [one for one in times if one > t or not rows]
+        run = solve_ivp(rates, (t, times[-1]), state, "DOP853", ahead, rtol=tolerance, atol=tolerance * 1e-3, max_step=step,
+                        events=ends)
+        assert run.success, run.message
+        for t, at in zip(run.t, np.transpose(run.y)):
+            _, force, push = loose(e, at, touches)
+            rows.append((t, *at[:4], force[0], push))
+        if run.status == 0:
+            break
+        t, state, touches, changes = run.t_events[0][0], run.y_events[0][0], not touches, changes + 1
+    return rows, changes
+
+
 # All effects, and each alone on top of the masses of crank and piston.
 OFF = dict(bore=0, g=0, mu_liner=0, viscous=0, mu_pins=0, stall=0, drag=0, stiffness=0)
 CASES = {"all": {}} | {
@@ -124,6 +211,15 @@ if __name__ == "__main__":
         k = range(1, len(COSINES) + 1)
         print(rounded([over.mean()]), rounded([2 * (over * np.cos(i * half)).mean() for i in k]),
               rounded([2 * (over * np.sin(i * half)).mean() for i in k]))
+    elif sys.argv[1:] == ["clearance"]:
+        times = np.linspace(0, 0.05, 26)
+        (fine, changes), (rough, _) = (loose_motion(ENGINE, times, *of) for of in ((1e-13, 1e-6), (1e-12, 2e-6)))
+        far = np.max(np.abs(np.array(fine) - np.array(rough)), axis=0)
+        print("# Made by slider_crank_engine.py clearance: t (s), theta (rad), phi (rad), y (m), omega (rad/s), side load (N), "
+              "force in the eye (N)")
+        print(f"# {changes} touches and lift-offs; differences from a rougher run:", *(f"{value:.1e}" for value in far[1:]))
+        for t, *row in fine:
+            print(f"{t:.3f}", *(f"{value:.14g}" for value in row))
     else:
         times = np.linspace(0, 0.05, 26)
         print("# Made by slider_crank_engine.py: case, t (s), theta (rad), omega (rad/s), side load (N)")

@@ -22,6 +22,10 @@
 //! | `motor` | starter with the torque–speed line τ₀ (1 − ω/ω₀) |
 //! | `fan` | quadratic drag −c ω \|ω\| |
 //! | `spring` | spring between head and piston |
+//! | `clearance` | the piston's pin with play in the eye of the rod: contact k p (1 + d ṗ) of circle in circle, with friction of its own |
+//!
+//! The clearance releases the constraint of the piston's pin. Its multipliers are then 0, and so is the friction that `pin_friction` has
+//! there. The distance of both centres is smooth below 1 nm, for its slope at 0 is no number.
 //!
 //! Numbers: a small petrol engine, round. The table is of a cycle with polytropic compression and heat by Wiebe's law.
 //! `mechanisms/references/slider_crank_engine.py` makes it, and solves the motion by equations that were derived by hand.
@@ -30,8 +34,8 @@ use mbs_runtime::mechanism;
 use mbs_workbench::card;
 use mbs_workbench::card::Card;
 
-/// In the list of free mechanisms.
-pub const CARD: Card = card!(SliderCrankEngine::default());
+/// All joints without play; in the list of free mechanisms.
+pub const CARD: Card = card!(SliderCrankEngineTight::default());
 
 mechanism! {
     /// Slider-crank of a four-stroke engine.
@@ -135,6 +139,27 @@ mechanism! {
         param stiffness: N/m = 3000;
         tsda spring { from: [0, 260mm], to: p, stiffness: stiffness, length: 120mm }
     }
+    /// The pin of the piston has play in the eye of the rod, and touches it where the charge is lit.
+    effect clearance {
+        /// Radius of the eye less that of the pin.
+        param play: m = 15um in 1um..100um;
+        param eye_stiffness: N/m = 5e8;
+        param eye_damping: s/m = 20;
+        param mu_eye: 1 = 0.004;
+        /// Of the bush in the eye; it gives a rod without mass the mass that a contact needs.
+        param bush_mass: kg = 40gram;
+        release piston_pin;
+        body bush { mass: bush_mass, com: c + (L - d)*along }
+        let off = p - c - (L - d)*along;
+        contact eye { gap: play - hypot(off[0], off[1], 1e-9m), stiffness: eye_stiffness, damping: eye_damping }
+        friction eye_rubs { along: 11mm*phi, normal: normal(eye), coefficient: mu_eye, speed: 0.1 [m/s] }
+        start phi = 0 rate -r*speed/L;
+        start p = [0, r + L - play] rate [0, 0];
+        /// Force between pin and eye.
+        out eye_force: N = normal(eye);
+    }
+    /// All joints without play.
+    scene Tight = gas + rod + gravity + liner_friction + pin_friction + motor + fan + spring;
 
     title "Slider-crank engine";
     about "One working cycle of a small four-stroke engine, with forces as effects: `mbs effects slider_crank_engine` \

@@ -66,8 +66,7 @@ fn the_scene_that_is_printed_for_the_engine_compiles_and_stays_within_the_bound(
     }
     let source = slider_crank_engine::CARD.equations().source();
     fs::write(folder.join("engine.mbs"), format!("{source}\n{paste}\n")).expect("a text");
-    let (enough, whole) =
-        (column(&folder, "Enough", "side_load"), column(&folder, "AllEffects", "side_load"));
+    let (enough, whole) = (column(&folder, "Enough", "side_load"), column(&folder, "Tight", "side_load"));
     let (low, high) = whole.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
     let change = enough.iter().zip(&whole).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / (high - low);
     println!("side load of the printed scene: {:.2} % of 1 %", 100.0 * change);

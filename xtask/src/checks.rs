@@ -22,7 +22,7 @@ const LONG: [(&str, &str); 13] = [
     ("mechanisms", "lecture"),
     ("mbs-tests", "assembly"),
     ("mbs-tests", "proofs"),
-    ("mbs-faults", "nothing_follows"),
+    ("mbs-faults", ""),
 ];
 
 /// Options of tests that are run with optimisation: the stack that code takes, and whole studies.

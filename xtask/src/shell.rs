@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::Instant;
 
 /// Folder of the workspace.
 pub fn root() -> PathBuf {
@@ -29,13 +30,16 @@ pub fn run(command: &mut Command) -> Result<(), String> {
     if status.success() { Ok(()) } else { Err(format!("{}: {status}", written(command))) }
 }
 
-/// Runs a command with its own line before it.
+/// Runs a command with its own line before it, and the time that it took behind.
 ///
 /// # Errors
 /// Those of [`run`].
 pub fn step(command: &mut Command) -> Result<(), String> {
     println!("\n== {}", written(command));
-    run(command)
+    let begun = Instant::now();
+    let done = run(command);
+    println!("== {} s", begun.elapsed().as_secs());
+    done
 }
 
 /// Standard output of a command; its standard error passes.

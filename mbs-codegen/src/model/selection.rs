@@ -9,7 +9,7 @@ use crate::syntax::ast::{Name, Statement, StatementKind};
 use crate::syntax::rust_identifiers::UNUSABLE;
 use crate::syntax::{Header, NAMELESS, OWN, declares_coordinate, stand_in};
 
-/// The scene of all effects.
+/// The scene of all effects, and of a text that declares none.
 pub const WHOLE: &str = "AllEffects";
 
 /// Name of the mechanism in a scene: of the alias, of the beginning of the view of the coordinates.

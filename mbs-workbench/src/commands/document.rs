@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use mbs_codegen::Fault;
+use mbs_codegen::{Fault, WHOLE};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -11,9 +11,6 @@ use super::CommandError;
 use super::target::Target;
 use crate::erased::facade::AnyEquations;
 use crate::output::origin::{Origin, VERSION};
-
-/// Scene of a text that declares none.
-pub const WHOLE: &str = "AllEffects";
 
 /// Number of the schemas: it grows when a field changes its meaning or goes.
 const SCHEMA: u32 = 1;

@@ -9,12 +9,13 @@ use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use mbs_codegen::WHOLE;
 use mbs_codegen::picture::{Picture, Span, picture};
 
 use super::assignment::{Assignment, assignment, with_unit};
 use super::chosen::component;
 use super::cost::{above_zero, machine};
-use super::document::{Output, WHOLE};
+use super::document::Output;
 use super::report_files::{require_writable, write_report};
 use super::target::Target;
 use super::{CommandError, effects_words, summary};

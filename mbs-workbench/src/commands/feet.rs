@@ -20,7 +20,7 @@ pub fn require(equations: &dyn AnyEquations) -> Result<(), CommandError> {
     }
     let known =
         |name: &str| equations.get(equations.variables().iter().position(|variable| variable.name == name)?);
-    let scene = Some(equations.scene()).filter(|scene| *scene != "AllEffects");
+    let scene = Some(equations.scene()).filter(|scene| *scene != mbs_codegen::WHOLE);
     let feet = Oracle::feet(equations.source(), scene, &known);
     feet.unwrap_or_default().iter().try_for_each(|foot| judged(foot, &given))
 }

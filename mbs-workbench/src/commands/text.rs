@@ -1,11 +1,11 @@
 //! The text of a mechanism, for commands that need no code: of a file it is read without a build.
 
-use mbs_codegen::StructureReport;
 use mbs_codegen::picture::{Picture, picture};
+use mbs_codegen::{StructureReport, WHOLE};
 
 use super::CommandError;
 use super::chosen::Chosen;
-use super::document::{Output, WHOLE};
+use super::document::Output;
 use crate::catalogue::Catalogue;
 use crate::mismatch::Mismatch;
 use crate::output::latex::{Value, values};

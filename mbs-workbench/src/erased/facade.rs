@@ -87,7 +87,7 @@ pub trait AnyEquations {
     }
     /// Name of the type in its scene, as generated code and definitions for CasADi spell it.
     fn full_name(&self) -> String {
-        let scene = if self.scene() == "AllEffects" { "" } else { self.scene() };
+        let scene = if self.scene() == mbs_codegen::WHOLE { "" } else { self.scene() };
         format!("{}{scene}", self.type_name())
     }
     /// The same behind the module that has the text, `my_crate::wiper::Wiper`; without it where that is not told.

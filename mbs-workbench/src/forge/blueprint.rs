@@ -139,7 +139,7 @@ impl Blueprint {
     /// A study of the mechanism of a text, as [`of_text`](Self::of_text).
     pub fn study_of_text(study: &Study, text: &TextFile) -> Self {
         let own = text.type_name();
-        let item = study.item((&constructor(&own, &text.functions), &own), &[]);
+        let item = study.item((&constructor_of_text(text), &own), &[]);
         Self::for_text(text, study.suffix, &item, |module| study.call(&format!("{module}::")))
     }
 
@@ -152,7 +152,7 @@ impl Blueprint {
         let lines = text.source.chars().take_while(|c| *c == '\n').count();
         let (before, source) = text.source.split_at(lines);
         let prefix = format!("mod {module} {{ ::mbs_runtime::mechanism! {{ ");
-        let card = format!("::mbs_workbench::card!({})", constructor(&text.type_name(), &text.functions));
+        let card = format!("::mbs_workbench::card!({})", constructor_of_text(text));
         // The user's lines keep their numbers, so nothing stands above them.
         let main = format!(
             "{before}{prefix}{source}\n}} pub const CARD: ::mbs_workbench::card::Card = {card}; {items} }}\n\n{HEAD}\n\n\
@@ -289,7 +289,7 @@ impl Blueprint {
         let entries: String = scenes
             .iter()
             .map(|scene| {
-                let made = constructor(&format!("{mechanism}{scene}"), &functions);
+                let made = constructor(&format!("{mechanism}{scene}"), "", &functions);
                 format!(
                     "    ({scene:?}, |values| ::mbs_workbench::erased::scene_runs::scene_runs({made}, values)),\n"
                 )
@@ -352,11 +352,26 @@ fn module_of(constructor: &str) -> Option<String> {
     (!modules.is_empty()).then(|| root.to_string() + &modules.join("::"))
 }
 
-/// The call that makes a mechanism of type `own`, with the functions that its text declares from the program's command line.
-fn constructor(own: &str, functions: &[DeclaredFunction]) -> String {
-    if functions.is_empty() {
-        return format!("{own}::default()");
+/// The call that makes the mechanism of a text, with the functions that it declares from the program's command line.
+fn constructor_of_text(text: &TextFile) -> String {
+    // Of the type in all scenes the last parameter is the scene: its default holds where others are given.
+    let mut types: Vec<&str> = Vec::new();
+    if text.is_whole {
+        let mut arrays: Vec<&str> = text.functions.iter().map(|function| array(&function.name)).collect();
+        arrays.dedup();
+        types.extend(arrays.iter().map(|_| "_").chain(["f64"]));
     }
+    let types = if types.is_empty() { String::new() } else { format!("::<{}>", types.join(", ")) };
+    constructor(&text.type_name(), &types, &text.functions)
+}
+
+/// The name of an array of functions without the number; that of a function alone as it is.
+fn array(name: &str) -> &str {
+    name.split('[').next().unwrap_or_default()
+}
+
+/// The call that makes the mechanism of type `own` with these arguments, `types`.
+fn constructor(own: &str, types: &str, functions: &[DeclaredFunction]) -> String {
     let mut arguments: Vec<(&str, Vec<String>)> = Vec::new();
     for function in functions {
         let DeclaredFunction { name, unit, argument_unit, continuity, period } = function;
@@ -364,10 +379,9 @@ fn constructor(own: &str, functions: &[DeclaredFunction]) -> String {
         let call = format!(
             "::mbs_workbench::given_function(({name:?}, {unit:?}, {argument_unit:?}, {continuity}, {period}))"
         );
-        let array = name.split('[').next().unwrap_or_default();
-        match arguments.last_mut().filter(|(known, _)| *known == array) {
+        match arguments.last_mut().filter(|(known, _)| *known == array(name)) {
             Some((_, calls)) => calls.push(call),
-            None => arguments.push((array, vec![call])),
+            None => arguments.push((array(name), vec![call])),
         }
     }
     let is_array = |name: &str| functions.iter().all(|function| function.name != name);
@@ -375,7 +389,12 @@ fn constructor(own: &str, functions: &[DeclaredFunction]) -> String {
         true => format!("[{}]", calls.join(", ")),
         false => calls.concat(),
     };
-    format!("{own}::new({})", arguments.iter().map(argument).collect::<Vec<_>>().join(", "))
+    match arguments.is_empty() {
+        true => format!("{own}{types}::default()"),
+        false => {
+            format!("{own}{types}::new({})", arguments.iter().map(argument).collect::<Vec<_>>().join(", "))
+        }
+    }
 }
 
 /// The functions of the caller that have two derivatives, by their names: an item of Rust.

@@ -120,7 +120,7 @@ impl Own<'_> {
             let index = self.equations.variables().iter().position(|entry| entry.name == name)?;
             values.iter().find(|(own, _)| *own == index).map(|(_, value)| *value)
         };
-        let scene = Some(self.equations.scene()).filter(|scene| *scene != "AllEffects");
+        let scene = Some(self.equations.scene()).filter(|scene| *scene != mbs_codegen::WHOLE);
         let jets = self.equations.jets();
         let functions = |name: &str| {
             let index = self.equations.functions().iter().position(|entry| entry.name == name)?;

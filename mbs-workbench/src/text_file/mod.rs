@@ -9,7 +9,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 pub use self::argument::{Argument, is_file};
-use mbs_codegen::{Call, DeclaredFunction, Fault, Outline};
+use mbs_codegen::{Call, DeclaredFunction, Fault, Outline, WHOLE};
 
 use crate::hash::hash_of_text;
 use crate::mismatch::nearest;
@@ -25,8 +25,10 @@ pub struct TextFile {
     pub source: String,
     /// Name of the mechanism.
     pub name: String,
-    /// Name of the scene; `None` where the text declares none.
+    /// Name of the scene; `None` for the whole text.
     pub scene: Option<String>,
+    /// `true` for the whole of a text that declares scenes.
+    pub is_whole: bool,
     /// Functions that the caller gives.
     pub functions: Vec<DeclaredFunction>,
 }
@@ -105,10 +107,12 @@ impl TextFile {
                 return Err(TextFileError::Several { argument: argument.to_string(), known });
             }
             (Some(scene), known) if known.iter().any(|name| name == scene) => Some(scene.to_string()),
+            (Some(WHOLE), _) if outline.has_whole => None,
             (Some(_), _) => return Err(asked.unknown(&calls)),
         };
+        let is_whole = scene.is_none() && outline.has_whole;
         let Outline { name, functions, .. } = outline;
-        Ok(TextFile { source: call.source.clone(), path, content, name, scene, functions })
+        Ok(TextFile { source: call.source.clone(), path, content, name, scene, is_whole, functions })
     }
 
     /// Name of the emitted type in the scene.
@@ -206,8 +210,10 @@ pub fn listed(argument: &str) -> Result<Vec<Listed>, TextFileError> {
     let mut found = Vec::new();
     for call in &calls {
         let outline = outlined(&path, &content, call)?;
-        let scenes = outline.scenes.iter().map(|scene| Some(scene.as_str()));
-        let scenes: Vec<Option<&str>> = if outline.scenes.is_empty() { vec![None] } else { scenes.collect() };
+        let mut scenes: Vec<Option<&str>> = outline.scenes.iter().map(|scene| Some(scene.as_str())).collect();
+        if scenes.is_empty() || outline.has_whole {
+            scenes.push(None);
+        }
         for (argument, scene) in arguments(&path, call, calls.len() > 1).into_iter().zip(scenes) {
             let title = mbs_codegen::picture(&call.source, scene).map(|picture| picture.title);
             let variables = mbs_codegen::variables(&call.source, scene);
@@ -294,7 +300,9 @@ fn arguments(path: &str, call: &Call, several: bool) -> Vec<String> {
     let named = format!("{path}:{}", name.unwrap_or_default());
     match outline {
         Some(outline) if !outline.scenes.is_empty() => {
-            outline.scenes.iter().map(|scene| format!("{named}:{scene}")).collect()
+            let whole = outline.has_whole.then_some(WHOLE);
+            let scenes = outline.scenes.iter().map(String::as_str).chain(whole);
+            scenes.map(|scene| format!("{named}:{scene}")).collect()
         }
         Some(_) if !several => vec![path.to_string()],
         _ => vec![named],
@@ -386,17 +394,38 @@ mod tests {
              effect fast {{ drive m: phi == 9rad/1s*t; }}\n    scene Slow = slow;\n    scene Fast = fast;\n  }}\n}}\n"
         );
         let path = file("two.rs", &source);
+        // Both drives at once contradict each other: `AllEffects` is no mechanism.
         let known = ["One", "Two:Slow", "Two:Fast"].map(|name| format!("{path}:{name}")).to_vec();
         let several = TextFileError::Several { argument: path.clone(), known: known.clone() };
         assert_eq!(TextFile::read(&path).expect_err("two"), several);
         let unknown = |argument: String| TextFileError::Unknown { argument, known: known.clone() };
-        for wrong in ["Three", "One:Slow", "Two:Slower"].map(|name| format!("{path}:{name}")) {
+        for wrong in ["Three", "One:Slow", "Two:Slower", "Two:AllEffects", "One:AllEffects"]
+            .map(|name| format!("{path}:{name}"))
+        {
             assert_eq!(TextFile::read(&wrong).expect_err("unknown"), unknown(wrong));
         }
         let text = TextFile::read(&known[2]).expect("a scene");
         assert_eq!((text.type_name().as_str(), text.scene.as_deref()), ("TwoFast", Some("Fast")));
         let scenes = TextFile::read(&format!("{path}:Two")).expect_err("two scenes").to_string();
         assert!(scenes.ends_with(&format!("name one:\n  {}\n  {}", known[1], known[2])), "{scenes}");
+    }
+
+    #[test]
+    fn all_effects_of_a_text_with_scenes_are_a_scene_where_they_are_a_mechanism() {
+        let source = "pub mechanism Arm; coord phi: rad; body arm { mass: 1kg, com: [0, 0], inertia: 1, angle: phi } start phi = 0; \
+                      effect fan { torque fan: -der(phi)*1 [N*m*s] on phi; } effect push { torque push: 1 [N*m] on phi; } \
+                      scene Still = fan;";
+        let path = file("arm.mbs", source);
+        let known: Vec<String> =
+            listed(&path).expect("a text").into_iter().map(|listed| listed.argument).collect();
+        assert_eq!(known, ["Still", "AllEffects"].map(|scene| format!("{path}:Arm:{scene}")));
+        let only = TextFile::read(&path).expect("a scene");
+        assert_eq!(
+            (only.type_name().as_str(), only.scene.as_deref(), only.is_whole),
+            ("ArmStill", Some("Still"), false)
+        );
+        let whole = TextFile::read(&known[1]).expect("all effects");
+        assert_eq!((whole.type_name().as_str(), whole.scene, whole.is_whole), ("Arm", None, true));
     }
 
     #[test]

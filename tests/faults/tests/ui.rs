@@ -1,15 +1,25 @@
 //! Messages that a user sees: the compiler's own, for one fault in each file, and no further errors.
 //!
 //! Every case uses the mechanism too, so that the stored messages prove that the stub serves. After a change that is
-//! meant, run `TRYBUILD=overwrite cargo test -p mbs-faults` and read the difference.
+//! meant, run `TRYBUILD=overwrite cargo test -p mbs-faults --features long --test ui` and read the difference.
 #![forbid(unsafe_code)]
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Each so many of the cases goes to the compiler, which takes two thirds of a second for one.
+const STRIDE: usize = if cfg!(feature = "long") { 1 } else { 5 };
 
 #[test]
 fn faults_are_reported_by_the_compiler_and_nothing_else_is() {
-    trybuild::TestCases::new().compile_fail("ui/*.rs");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("ui");
+    let files = fs::read_dir(folder).expect("the cases").map(|file| file.expect("a file").path());
+    let mut cases: Vec<PathBuf> =
+        files.filter(|file| file.extension().is_some_and(|suffix| suffix == "rs")).collect();
+    cases.sort();
+    assert!(cases.len() > 280, "{} cases", cases.len());
+    let compiler = trybuild::TestCases::new();
+    cases.iter().step_by(STRIDE).for_each(|case| compiler.compile_fail(case));
 }
 
 /// `mbs-codegen` keeps the same texts with what it reports by itself, whatever the compiler's version.

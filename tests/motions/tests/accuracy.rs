@@ -16,7 +16,7 @@ use mechanisms::n_four_bar_1::NFourBar1;
 use mechanisms::n_four_bar_10::NFourBar10;
 use mechanisms::pendulum::Pendulum;
 use mechanisms::quarter_car::QuarterCar;
-use mechanisms::slider_crank_engine::SliderCrankEngine;
+use mechanisms::slider_crank_engine::SliderCrankEngineTight;
 use mechanisms::slider_crank_mass::CrankPistonReleased;
 
 /// Starts of each mechanism.
@@ -173,7 +173,7 @@ fn asked_accuracies_are_reached() {
         check!("cart-pole", CartPole::<f64>::default(), 1.0);
         check!("four-bar", FourBarMassReleased::<f64>::default(), 1.0);
         check!("slider-crank", CrankPistonReleased::<f64>::default(), 1.0);
-        check!("engine", SliderCrankEngine::<f64>::default(), 0.05);
+        check!("engine", SliderCrankEngineTight::<f64>::default(), 0.05);
         check!("one loop", NFourBar1::<f64>::default(), 2.0);
         check!("two loops", NFourBar::<f64>::default(), 1.0);
         check!("ten loops", NFourBar10::<f64>::default(), 1.0);

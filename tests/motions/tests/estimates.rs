@@ -19,7 +19,7 @@ use mechanisms::n_four_bar_10::NFourBar10;
 use mechanisms::n_four_bar_40::NFourBar40;
 use mechanisms::pendulum::Pendulum;
 use mechanisms::quarter_car::QuarterCar;
-use mechanisms::slider_crank_engine::SliderCrankEngine;
+use mechanisms::slider_crank_engine::SliderCrankEngineTight;
 use mechanisms::slider_crank_mass::CrankPistonReleased;
 
 mechanism! {
@@ -240,7 +240,7 @@ fn estimates_are_trusted_within_their_bounds_alone() {
         check!("cart-pole", CartPole::<f64>::default(), 1.0);
         check!("four-bar", FourBarMassReleased::<f64>::default(), 1.0);
         check!("slider-crank", CrankPistonReleased::<f64>::default(), 0.6);
-        check!("engine", SliderCrankEngine::<f64>::default(), 0.05);
+        check!("engine", SliderCrankEngineTight::<f64>::default(), 0.05);
         check!("one loop", NFourBar1::<f64>::default(), 0.6);
         check!("two loops", NFourBar::<f64>::default(), 0.6);
         check!("ten loops", NFourBar10::<f64>::default(), 0.6, FEW);

@@ -15,6 +15,7 @@ pub(crate) struct Tangent<R, const N: usize> {
 
 impl<R: Real, const N: usize> Tangent<R, N> {
     /// C = −∂Q/∂q̇, K = (M q̈)_q + (Φ_qᵀ λ)_q − ∂Q/∂q.
+    #[inline(never)]
     pub(crate) fn of<S: Dynamic<R, N, M>, const M: usize>(
         model: &Model<'_, S, R, N, M>,
         position: &S::Position,

@@ -1,6 +1,6 @@
 //! Restitution of contacts, rigid contacts, clearance.
 
-use crate::texts::{Bounces, Disk, Latched, Loose, Touches};
+use crate::texts::{Bounces, Disk, Latched, Loose, PinInEye, Touches};
 use crate::{curve, hold, level, plot, spans};
 
 const LAWS: [&str; 4] = ["exact", "Hunt and Crossley", "Lankarani and Nikravesh", "Flores and others"];
@@ -100,4 +100,25 @@ fn a_slider_with_play() {
         level("lower wall", [0.0, 30.0], -1.0),
     ];
     hold("clearance", &plot("A slider between two walls", ["time (ms)", "height (mm)"], curves));
+}
+
+#[test]
+fn a_pin_with_play_in_its_eye() {
+    let seen =
+        traced!(PinInEye::<f64>::default(), 0.5, 500, |run| [run.t(), run.outputs()[0].value, run.q()[2]]);
+    // Of the ideal joint: m = 1 kg, l = 0.2 m, J = 0.02 + 0.04 kg·m², ω² = −2 m g l sin φ / J, α = −m g l cos φ / J.
+    let ideal = |phi: f64| {
+        let (sine, cosine) = phi.sin_cos();
+        let (along, across) =
+            (9.81 * sine + 2.0 * 0.04 * 9.81 * sine / 0.06, 9.81 * cosine * (1.0 - 0.04 / 0.06));
+        along.hypot(across)
+    };
+    let late = seen.iter().filter(|[t, ..]| *t > 0.1);
+    let apart = late.map(|[_, push, phi]| (push - ideal(*phi)).abs()).fold(0.0, f64::max);
+    assert!(apart < 1.0, "{apart} N");
+    let curves = vec![
+        curve("with play", seen.iter().map(|[t, push, _]| [1e3 * t, *push]).collect()),
+        curve("ideal joint", seen.iter().map(|[t, _, phi]| [1e3 * t, ideal(*phi)]).collect()).dashed(),
+    ];
+    hold("pin_in_eye", &plot("Force of a pin in its eye", ["time (ms)", "force (N)"], curves));
 }

@@ -50,7 +50,7 @@ mod texts {
 }
 
 /// Names of all pictures.
-const PICTURES: [&str; 26] = [
+const PICTURES: [&str; 27] = [
     "backlash",
     "bounces",
     "bushing",
@@ -67,6 +67,7 @@ const PICTURES: [&str; 26] = [
     "lugre_speed",
     "motor_current",
     "one_way_spring",
+    "pin_in_eye",
     "presliding",
     "restitution_asked",
     "restitution_speed",

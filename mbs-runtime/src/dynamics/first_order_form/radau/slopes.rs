@@ -58,14 +58,31 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Slopes<S, R, 
         lambda: &[R; M],
     ) -> Result<Self, Failure> {
         let (mechanism, parameters, position) = (model.mechanism, model.parameters, model.position(t, y));
-        let factors = correction_factors(model, t, &position)?;
-        let tangent = Tangent::of(model, &position, y, qdd, lambda);
         let mut friction = [[R::constant(0.0); M]; N];
         if S::FORCE_USES_MULTIPLIERS {
             friction = mechanism.force_lambda(parameters, &position, &y.qd, &y.states, lambda);
         }
-        let about = About { model, t, y, qdd, lambda, position, factors, friction, tangent };
-        Ok(mechanism.set_valued_rows(parameters, &position, &y.qd, &y.states, lambda, about))
+        // In place: these are the large matrices, and a stack is small.
+        let about = About {
+            model,
+            t,
+            y,
+            qdd,
+            lambda,
+            position,
+            factors: correction_factors(model, t, &position)?,
+            friction,
+            tangent: Tangent::of(model, &position, y, qdd, lambda),
+        };
+        Ok(mechanism.set_valued_rows(parameters, &about.position, &y.qd, &y.states, lambda, &about))
+    }
+}
+
+/// `less` becomes the negative of a column of `matrix`.
+fn less_column<R: Real, const N: usize>(less: &mut [R; N], matrix: &[[R; N]; N], index: usize) {
+    let zero = R::constant(0.0);
+    for (less, row) in less.iter_mut().zip(matrix) {
+        *less = -row.get(index).copied().unwrap_or(zero);
     }
 }
 
@@ -86,7 +103,7 @@ impl<R: Real, const N: usize, const L: usize> WithSetValuedRows<R, N> for OpenRo
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> WithSetValuedRows<R, N>
-    for About<'_, S, R, N, M>
+    for &About<'_, S, R, N, M>
 {
     type Output = Slopes<S, R, N, M>;
 
@@ -108,18 +125,20 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> WithSetValued
             &self.y.states,
             self.lambda,
         );
-        let (mut q, mut qd, mut states) = ([[zero; N]; N], [[zero; N]; N], states);
-        for (index, (q, qd)) in q.iter_mut().zip(&mut qd).enumerate() {
-            let column = |matrix: &[[R; N]; N]| matrix.map(|row| -row.get(index).copied().unwrap_or(zero));
-            *q = solved(&column(stiffness), &self.rows_by_place(index, &open));
-            *qd = solved(&column(damping), &self.rows_by_speed(index));
+        let mut slopes: Self::Output = Slopes { q: [[zero; N]; N], qd: [[zero; N]; N], states };
+        let mut force = [zero; N];
+        for (index, (q, qd)) in slopes.q.iter_mut().zip(&mut slopes.qd).enumerate() {
+            less_column(&mut force, stiffness, index);
+            *q = solved(&force, &self.rows_by_place(index, &open));
+            less_column(&mut force, damping, index);
+            *qd = solved(&force, &self.rows_by_speed(index));
         }
-        if let Some(states) = &mut states {
+        if let Some(states) = &mut slopes.states {
             for state in states.as_mut() {
                 state.force = solved(&state.force, &none);
             }
         }
-        Slopes { q, qd, states }
+        slopes
     }
 }
 
