@@ -9,7 +9,7 @@ use crate::{browser, costs, documents, fuzz, growth, lines, planted};
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 13] = [
+const LONG: [(&str, &str); 14] = [
     ("mbs-book", "pictures"),
     ("mbs-codegen", ""),
     ("mbs-motions", ""),
@@ -19,6 +19,7 @@ const LONG: [(&str, &str); 13] = [
     ("mbs-cases", "laws"),
     ("mechanisms", "catalogue"),
     ("mechanisms", "effects"),
+    ("mechanisms", "functions_of_files"),
     ("mechanisms", "lecture"),
     ("mbs-tests", "assembly"),
     ("mbs-tests", "proofs"),
@@ -28,7 +29,7 @@ const LONG: [(&str, &str); 13] = [
 /// Options of tests that are run with optimisation: the stack that code takes, and whole studies.
 const OPTIMISED: [&[&str]; 2] = [
     &["-p", "mbs-motions", "--test", "stiff", "of_stack"],
-    &["-p", "mechanisms", "--features", "long", "--test", "catalogue", "desmo::whole"],
+    &["-p", "mechanisms", "--test", "catalogue", "--", "desmo::whole", "play"],
 ];
 
 /// Format, lints, documentation, tests, counts of instructions, hard cases.

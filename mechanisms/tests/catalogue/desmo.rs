@@ -201,7 +201,6 @@ fn coarse_tables_of_a_high_lift_have_a_mismatch() {
 }
 
 /// Whole studies, in which every number is computed: half an hour without optimisation.
-#[cfg(feature = "long")]
 mod whole {
     use super::*;
 

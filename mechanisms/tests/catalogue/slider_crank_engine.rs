@@ -67,7 +67,7 @@ fn all_effects_without_play_and_each_alone_move_as_equations_derived_by_hand() {
 const COLUMNS: usize = 7;
 
 #[test]
-#[cfg_attr(not(feature = "long"), ignore = "thousands of steps with a contact")]
+#[cfg_attr(debug_assertions, ignore = "takes long without optimisation: `cargo test --release`")]
 fn a_pin_with_play_moves_as_equations_derived_by_hand() {
     let reference = include_str!("../../references/slider_crank_engine_clearance.txt");
     let rows: Vec<[f64; COLUMNS]> = reference
