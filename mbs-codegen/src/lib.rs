@@ -201,7 +201,11 @@ pub fn outline(source: &str) -> Result<Outline, Vec<Fault>> {
     let mut diagnostics = Diagnostics::default();
     let read = model::scenes::read_source(source, &mut diagnostics)
         .filter(|(text, scenes)| translate(text, scenes, &mut diagnostics, Lengths::USUAL).is_some());
-    read.map(|(text, scenes)| outline::names(&text, &scenes)).ok_or_else(|| {
+    let named = |(text, scenes): (syntax::Text, Scenes)| {
+        let has_whole = scenes.whole.as_ref().is_some_and(|whole| translate_scene(whole).is_ok());
+        outline::names(&text, &scenes, has_whole)
+    };
+    read.map(named).ok_or_else(|| {
         explain(source, &mut diagnostics);
         diagnostics.sorted().into_iter().map(Fault::from).collect()
     })

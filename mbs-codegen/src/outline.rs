@@ -143,12 +143,12 @@ fn call(rust: &str, group: &proc_macro2::Group) -> Option<Call> {
     Some(Call { name, source, line: open.start().line, place })
 }
 
-/// Before: a text without faults. After: its names.
-pub(crate) fn names(text: &Text, scenes: &Scenes) -> Outline {
+/// Before: a text without faults; `has_whole` where all its effects together are a mechanism beside its scenes. After: its names.
+pub(crate) fn names(text: &Text, scenes: &Scenes, has_whole: bool) -> Outline {
     Outline {
         name: text.header.label(),
         scenes: scenes.scenes.iter().filter_map(Scene::label).map(str::to_owned).collect(),
-        has_whole: scenes.whole.as_ref().is_some_and(|whole| crate::translate_scene(whole).is_ok()),
+        has_whole,
         functions: scenes.shared.functions.iter().flat_map(declared_functions).collect(),
     }
 }
