@@ -9,14 +9,11 @@ use crate::{browser, costs, documents, fuzz, growth, lines, planted};
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 14] = [
+const LONG: [(&str, &str); 11] = [
     ("mbs-book", "pictures"),
     ("mbs-codegen", ""),
     ("mbs-motions", ""),
-    ("mbs-cases", "events"),
-    ("mbs-cases", "friction"),
-    ("mbs-cases", "impacts"),
-    ("mbs-cases", "laws"),
+    ("mbs-cases", ""),
     ("mechanisms", "catalogue"),
     ("mechanisms", "effects"),
     ("mechanisms", "functions_of_files"),

@@ -58,7 +58,7 @@ fn adaptive(wedge: Wedge, formulation: impl Formulation<Wedge, f64, 2, 1>) -> Re
 
 #[test]
 fn a_normal_force_swings_through_zero_under_every_method() {
-    for b in [0.34, 0.78, 0.999, -0.78] {
+    for b in [0.34, 0.78, 0.999, -0.78].into_iter().step_by(every(2)) {
         // N grows with 1/(1 − b): pulled on, the block does not stop.
         let pull = if b > 0.9 { 6000.0 } else { 40.0 };
         let wedge = Wedge { b, pull };
@@ -291,7 +291,7 @@ fn balances(b: f64, kind: f64) -> Option<usize> {
 #[test]
 fn any_other_dependence_is_solved_by_newtons_method_and_its_balances_counted() {
     let mut seen = [0; 3];
-    for (index, kind) in (0..80).step_by(every(3)).flat_map(|index| [(index, 0.0), (index, 1.0)]) {
+    for (index, kind) in (0..80).step_by(every(6)).flat_map(|index| [(index, 0.0), (index, 1.0)]) {
         let b = f64::from(index) * 0.05 - 3.0;
         let Some(count) = balances(b, kind) else { continue };
         seen[count.min(2)] += 1;
@@ -315,7 +315,7 @@ fn any_other_dependence_is_solved_by_newtons_method_and_its_balances_counted() {
             }
         }
     }
-    assert!(seen[1] > 60 / every(3) && seen[2] > 20 / every(3), "{seen:?}");
+    assert!(seen[1] > 60 / every(6) && seen[2] > 20 / every(6), "{seen:?}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! D5: implicit steps in single precision follow friction whose speeds are less than rounding of a position over a step.
 
+use mbs_cases::every;
 use mbs_runtime::dynamics::{AugmentedLagrangian, Extrapolated, GeneralizedAlpha, Method, Simulation};
 use mbs_runtime::{Failure, FailureKind, Real, mechanism};
 
@@ -31,7 +32,7 @@ fn off(slope: f32, mu: f32, method: impl Method<Creeping<f32>, f32, 2, 1>) -> f3
 /// The way into the creep takes some milliseconds of the second.
 #[test]
 fn a_block_creeps_as_far_as_friction_lets_it() {
-    for (slope, mu) in [(0.1, 1.5), (0.02, 0.5), (0.3, 0.4), (0.5, 0.7)] {
+    for (slope, mu) in [(0.1, 1.5), (0.02, 0.5), (0.3, 0.4), (0.5, 0.7)].into_iter().step_by(every(2)) {
         let errors = [
             off(slope, mu, AugmentedLagrangian),
             off(slope, mu, GeneralizedAlpha::default()),

@@ -1,5 +1,6 @@
 //! K7: times of a run are sums of its steps, late and after many of them.
 
+use mbs_cases::every;
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Explicit, Projection, RungeKutta4, SemiImplicitEuler, Simulation,
     VelocityTransformation,
@@ -37,6 +38,7 @@ where
 #[test]
 fn steps_add_up_to_their_times() {
     for (steps, from) in [(1_000_000, 0.0), (200_000, 1e6), (200_000, -1e6)] {
+        let steps = steps / every(10) as u32;
         let [time, height] = after::<f64>(steps, from);
         // Half of the last digit of the time; plain sums are off by 1e-5 s at a million seconds, by 2e-8 s after a million steps.
         let digit = f64::EPSILON * (from.abs() + 1e-3 * f64::from(steps));
