@@ -68,6 +68,14 @@ fn cells(line: &str) -> Vec<f64> {
 }
 
 #[test]
+fn a_text_with_one_scene_in_the_list_goes_by_its_name() {
+    let structure = |name: &str| standard_output(mbs(&["structure", name]));
+    assert_eq!(structure("slider_crank_engine"), structure("slider_crank_engine:Tight"));
+    let message = failure(mbs(&["structure", "slider_crank_mass"]), 2);
+    assert!(message.contains("slider_crank_mass:Driven"), "{message}");
+}
+
+#[test]
 fn without_arguments_the_four_bar_runs_one_turn() {
     let text = standard_output(mbs(&[]));
     for part in
